@@ -297,7 +297,8 @@ impl<'a> LoadCase<'a> {
                 for rubbing in self.rubbing_at(&loaded, position, span.pairs, &states[node]) {
                     sliding += weight * rubbing.load * rubbing.rolling.sliding().abs();
                     power += weight * rubbing.power();
-                    if loaded.mean.is_none() && rubbing.coefficient > 0.0 && rubbing.load > SMALL * self.force {
+                    let slides = rubbing.rolling.sliding() != 0.0;
+                    if loaded.mean.is_none() && slides && rubbing.load > SMALL * self.force {
                         beyond.see(&friction.law.limits(&rubbing.rolling));
                     }
                 }
