@@ -9,7 +9,7 @@ use declare::Declared;
 #[derive(Clone, Debug, PartialEq, Declared)]
 #[declared(name = "constant")]
 pub struct Constant {
-    /// μ.
+    /// Coefficient of friction μ.
     #[declared(minimum = 0.0, maximum = 1.0, example = "0.05")]
     pub coefficient: f64,
 }

@@ -178,7 +178,8 @@ impl<'a> LoadCase<'a> {
         let (loaded, pitch_point) = (self.loaded(friction), self.cycle.at_pitch_point());
         let breaks = self.breaks_and_pitch_point();
         let regime = Regime::Resisted(Arc::new(Resisted { loaded, regime: self.regime.clone(), pitch_point }));
-        Self { regime, breaks, ..self }
+        // Local laws bend without end towards the pitch point, where halving goes on at a price that the laws are not worth.
+        Self { regime, breaks, refines: self.refines && friction.law.is_mean(), ..self }
     }
 
     pub(super) fn without_friction(&self, resisted: &Resisted<'a>) -> Self {
