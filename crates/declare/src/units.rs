@@ -41,7 +41,11 @@ pub const ANGULAR_SPEED: Dimension = dimension(0, 0, -1, 1);
 pub const DENSITY: Dimension = dimension(-3, 1, 0, 0);
 /// Kinematic viscosity, m²/s.
 pub const VISCOSITY: Dimension = dimension(2, 0, -1, 0);
+/// Dynamic viscosity, Pa s.
+pub const DYNAMIC_VISCOSITY: Dimension = dimension(-1, 1, -1, 0);
 pub const MOMENT_OF_INERTIA: Dimension = dimension(2, 1, 0, 0);
+pub const SPEED: Dimension = dimension(1, 0, -1, 0);
+pub const POWER: Dimension = dimension(2, 1, -3, 0);
 
 impl Dimension {
     fn times(self, other: Self, power: i8) -> Self {
@@ -79,7 +83,10 @@ impl Dimension {
             ANGULAR_SPEED => ("an angular speed", &["rpm", "rad/s"]),
             DENSITY => ("a density", &["kg/m^3"]),
             VISCOSITY => ("a kinematic viscosity", &["mm^2/s", "m^2/s"]),
+            DYNAMIC_VISCOSITY => ("a dynamic viscosity", &["mPa s", "Pa s"]),
             MOMENT_OF_INERTIA => ("a moment of inertia", &["kg m^2", "kg mm^2"]),
+            SPEED => ("a speed", &["m/s"]),
+            POWER => ("a power", &["W", "kW"]),
             _ => ("a quantity", &[]),
         }
     }
@@ -112,10 +119,13 @@ const UNITS: &[(&str, i32, f64, Dimension)] = &[
     ("Nm", 0, 1.0, TORQUE),
     ("Nmm", -3, 1.0, TORQUE),
     ("kNm", 3, 1.0, TORQUE),
+    ("mPa", -3, 1.0, STRESS),
     ("Pa", 0, 1.0, STRESS),
     ("kPa", 3, 1.0, STRESS),
     ("MPa", 6, 1.0, STRESS),
     ("GPa", 9, 1.0, STRESS),
+    ("W", 0, 1.0, POWER),
+    ("kW", 3, 1.0, POWER),
     ("kg", 0, 1.0, dimension(0, 1, 0, 0)),
     ("s", 0, 1.0, TIME),
     ("ms", -3, 1.0, TIME),

@@ -3,11 +3,13 @@
 //! Up to 128 torques are a chunk each, so an added one computes only itself. Must not know: who made the designs.
 
 mod ahead;
+mod friction;
 mod nominal;
 mod pressures;
 mod samples;
 mod simpler;
 mod tables;
+mod warnings;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
@@ -15,13 +17,13 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
+use self::friction::{Friction, Lost};
 use self::nominal::nominal_root_stresses;
 use self::pressures::CellRow;
 use self::samples::{Sample, Samples};
 use self::tables::{Found, HARMONICS, Keyed, Load, amplitudes, cost, curve, harmonics, points, summary};
 use crate::stage::cases::{DEVIATIONS, Deviation, Deviations};
 use crate::stage::common::{Contact, Slices};
-use crate::stage::doubts::Doubted;
 use crate::stage::names::{self, summary};
 use crate::stage::{
     Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, Saved, Stage, common, designs,
@@ -37,14 +39,12 @@ use gearmesh::gear::modification::{self, Design};
 use gearmesh::gear::transmission_error::curve::{Summary, Wanted};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::doubt::Doubt;
-use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::gear::transmission_error::pressure::Cornered;
 use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
 use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES, ROOT_STRESSES};
 use studygraph::stage::steps::Steps;
 use studygraph::table::data::{Cell, Table, TableError};
 use studygraph::table::schema::Schema;
-use studygraph::warning::{Cases, Warning};
 
 pub const KIND: Kind = Kind {
     name: "ste",
@@ -57,6 +57,7 @@ kind: ste
 stiffness: stiffness
 designs: modification
 torque: { from: 25 N m, to: 100 N m, count: 4 }
+friction: { law: { constant: { coefficient: 0.05 } }, speed: 1500 rpm }
 ",
     build,
 };
@@ -85,6 +86,8 @@ struct Ste {
     pub slices: Slices,
     #[declared(flatten)]
     pub contact: Contact,
+    /// Friction of the flanks, for what is lost and, if that is stated, for the loads.
+    pub friction: Option<Friction>,
     /// By how much of a design's peak-to-peak that of long relief may be larger, to be told as a simpler one that is as good.
     #[declared(minimum = 0.0, maximum = 0.5, dimension = RATIO, example = "5 %")]
     pub simpler_within: Option<f64>,
@@ -102,16 +105,12 @@ struct Ste {
     pub pressure_positions: usize,
 }
 
-/// Of the module: an approach beyond it is told, since nothing here is linear any more. The article `mei2016` goes to 0.18.
-const LARGE_APPROACH: f64 = 0.5;
-
-/// An estimated error of the peak-to-peak that is told although nobody asked for an accuracy.
-const POOR: f64 = 0.01;
-
 /// Time of a solve that a slice adds, over that of a solve without slices.
 const PER_SLICE: f64 = 0.01;
 /// Solves that a curve takes for each of its positions, with its extrema and first touches.
 const SOLVES_PER_POSITION: f64 = 4.0;
+/// Solves for what a curve loses, over those of the curve.
+const LOSS_OF_CURVE: f64 = 0.5;
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let ste = Ste::checked(record)?;
@@ -125,6 +124,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     }
     ste.deviations.check(record)?;
     common::check_slices(ste.settings(), record)?;
+    ste.check_friction(record)?;
     Ok(Box::new(ste))
 }
 
@@ -143,6 +143,8 @@ struct Answer {
     cornered: Option<Cornered>,
     /// As [`LoadCase::contact_doubt`] has it.
     doubt: Option<Doubt>,
+    /// What friction takes, if that was asked for.
+    lost: Option<Lost>,
     /// Nominal root stress by ISO 6336-3 \[Pa\], where it was asked for and holds.
     iso6336: [f64; 2],
 }
@@ -157,26 +159,26 @@ impl Ste {
         base: &MeshCycle,
         (design, name): (&Design, &str),
         torque: f64,
-        (wanted, of_pairs): (Wanted, bool),
+        wanted: &WantedHere,
         iso6336: [f64; 2],
     ) -> Result<(Answer, Found), Failure> {
         let began = Instant::now();
-        let loading = LoadCase::new(base, design, torque);
+        let loading = self.loading(base, design, torque);
         // Most samplings differ in their positions alone, and a cycle with other slices is a copy of all its tables.
         let differs = |settings: Settings| Settings { positions: base.settings.positions, ..settings } != base.settings;
         let mut sampled = Sampled::new(loading.uses_slices(), Against::Coarser, |settings| {
             if differs(settings) {
-                return LoadCase::new(&base.sampled(settings), design, torque).peak_to_peak();
+                return self.loading(&base.sampled(settings), design, torque).peak_to_peak();
             }
             loading.with_positions(settings.positions).peak_to_peak()
         });
         let settings = self.accuracy.map_or(self.settings(), |accuracy| sampled.coarsest(self.settings(), accuracy));
         let resampled = differs(settings).then(|| base.sampled(settings));
         let loading = match &resampled {
-            Some(cycle) => LoadCase::new(cycle, design, torque),
+            Some(cycle) => self.loading(cycle, design, torque),
             None => loading.with_positions(settings.positions),
         };
-        let (points, summary) = loading.curve_and_summary(wanted);
+        let (points, summary) = loading.curve_and_summary(wanted.of_curve);
         if !loading.holds(summary.largest.value) {
             let (found, maximum) = (in_unit(summary.largest.value, "mm"), in_unit(loading.largest_approach(), "mm"));
             return Err(Failure::new(format!(
@@ -190,50 +192,32 @@ impl Ste {
         let error = sampled.error(settings);
         let doubt = loading.contact_doubt();
         let cornered = loading.cornered(&points);
-        let wanted = points.iter().filter(|_| of_pairs);
-        let contacts = wanted.map(|point| pressures::contacts(&loading, point.cycle_position, point.pairs)).collect();
+        let lost = self.lost(&loading, wanted.loss);
+        let each = |is_wanted: bool| points.iter().filter(move |_| is_wanted);
+        let contacts = each(wanted.of_pairs)
+            .map(|point| pressures::contacts(&loading, point.cycle_position, point.pairs))
+            .collect();
+        let left = self.friction.iter().flat_map(|friction| {
+            each(wanted.left).map(|point| loading.friction_at(friction.of(), point.cycle_position, point.pairs))
+        });
+        let left = left.collect();
         let seconds = began.elapsed().as_secs_f64();
-        Ok((Answer { summary, settings, error, seconds, cornered, doubt, iso6336 }, (points, contacts)))
+        Ok((
+            Answer { summary, settings, error, seconds, cornered, doubt, lost, iso6336 },
+            Found { points, contacts, left },
+        ))
     }
+}
 
-    /// Of approaches that no linear model is for, of contacts that no law is for, and of accuracies that were not reached.
-    fn warn(&self, context: &Context, answers: &[Keyed], module: f64) {
-        for (name, Load { torque, .. }, answer) in answers {
-            let (largest, reached) = (answer.summary.largest.value, answer.error);
-            let tell = |about: &str, size: f64, what: String| {
-                let sentence = format!("design `{name}` at {torque} N m: {what}");
-                (context.warn)(Warning::Cases(Cases::one(about, name, (*torque, "N m"), (size, sentence))));
-            };
-            if largest > LARGE_APPROACH * module {
-                tell(
-                    "approach",
-                    largest,
-                    format!(
-                        "the gears approach by {:.6} mm, more than {LARGE_APPROACH} of the module of {:.6} mm; teeth that bend \
-                         so far are no longer linear, and the numbers are those of a linear model",
-                        largest * 1e3,
-                        module * 1e3,
-                    ),
-                );
-            }
-            let accurate = format!("the peak-to-peak is accurate to {reached:.1e}");
-            match self.accuracy {
-                Some(accuracy) if reached > accuracy => {
-                    tell("accuracy", reached, format!("{accurate}, not to {accuracy:.1e}"));
-                }
-                None if reached > POOR => {
-                    let help = "take more `slices` or `positions`, or ask for an `accuracy`";
-                    tell("accuracy", reached, format!("{accurate} only; {help}"));
-                }
-                _ => (),
-            }
-            let peak_to_peak = answer.summary.peak_to_peak;
-            let doubted = answer.doubt.map(|doubt| Doubted { design: name, torque: *torque, doubt, peak_to_peak });
-            if let Some(case) = doubted.and_then(|doubted| doubted.told()) {
-                (context.warn)(Warning::Cases(case.with_each("`summary.contact_doubt`")));
-            }
-        }
-    }
+/// What is wanted of a curve.
+struct WantedHere {
+    of_curve: Wanted,
+    /// The contacts of all pairs.
+    of_pairs: bool,
+    /// What friction takes over the cycle.
+    loss: bool,
+    /// What it leaves at every position.
+    left: bool,
 }
 
 /// A design as it is made and mounted, its name, and what is off.
@@ -251,15 +235,18 @@ impl Stage for Ste {
 
     fn outputs(&self) -> Vec<Schema> {
         let stated = &self.deviations.stated()[..];
-        vec![
-            summary(stated).schema(),
-            curve(stated).schema(),
+        let rubs = self.friction.is_some();
+        let mut schemas = vec![
+            summary(stated, rubs).schema(),
+            curve(stated, rubs).schema(),
             harmonics(stated).schema(),
             cost(stated).schema(),
             samples::samples(stated).schema(),
             samples::summary(stated).schema(),
             pressures::map(stated).schema(),
-        ]
+        ];
+        schemas.extend(rubs.then(|| friction::along(stated).schema()));
+        schemas
     }
 
     fn keys(&self, table: &str, column: &str, of: KeysOf) -> Option<Vec<Cell>> {
@@ -316,6 +303,10 @@ impl Stage for Ste {
             (summary::TABLE, Some(summary::LARGEST_ROOT_STRESS_PINION)) if !root_influences::are_wanted(demand) => {
                 for_each_solve(&ROOT_STRESSES, 1.0)
             }
+            // Any of them takes what is lost.
+            (summary::TABLE, Some(friction::MEAN_COEFFICIENT)) if !friction::of_summary_is_wanted(demand) => {
+                for_each_solve(&CONTACT_SOLVES, LOSS_OF_CURVE)
+            }
             (samples::TABLE, None) if !demand.table(samples::SUMMARY) => {
                 let curve = SOLVES_PER_POSITION * self.settings().positions as f64;
                 for_each_solve(&CONTACT_SOLVES, self.samples as f64 / curve)
@@ -362,8 +353,13 @@ impl Stage for Ste {
         let root_stress = root_influences::are_wanted(context.demand);
         let base = if root_stress { base.with_roots(&root_influences::of(inputs)?) } else { base };
         let pressure = pressures::are_wanted(context.demand);
-        let wanted = Wanted { harmonics: self.harmonics, pressure, root_stress };
-        let wanted = (wanted, pressures::of_pairs_are_wanted(context.demand));
+        let wanted = &WantedHere {
+            of_curve: Wanted { harmonics: self.harmonics, pressure, root_stress },
+            of_pairs: pressures::of_pairs_are_wanted(context.demand),
+            loss: friction::of_summary_is_wanted(context.demand),
+            left: friction::of_curve_is_wanted(context.demand),
+        };
+        let rubs = self.friction.is_some();
         let per_torque = nominal_root_stresses(context, &pair);
         let mut tasks: Vec<(&Named, f64)> =
             designs.iter().flat_map(|named| self.torque.iter().map(move |torque| (named, *torque))).collect();
@@ -371,7 +367,7 @@ impl Stage for Ste {
         tasks.sort_by(|a, b| a.0.1.cmp(&b.0.1).then(a.1.total_cmp(&b.1)));
         let narrowed = |schema: Schema| context.demand.narrowed(schema);
         let failed = |error: TableError| Failure::new(error.to_string());
-        let of_curve = narrowed(curve(stated).schema());
+        let of_curve = narrowed(curve(stated, rubs).schema());
         let steps = Steps::new(context, tasks.len());
         let at_once = (tasks.len() / (SHARES * rayon::current_num_threads())).clamp(1, MOST_AT_ONCE);
         let parts: Vec<(Vec<Keyed>, Table)> = tasks
@@ -388,7 +384,7 @@ impl Stage for Ste {
                     found.push((name.as_str(), load, curve));
                     steps.done();
                 }
-                let rows = curve(stated).only(&of_curve).table_of(&points(&found)).map_err(failed)?;
+                let rows = curve(stated, rubs).only(&of_curve).table_of(&points(&found)).map_err(failed)?;
                 Ok((answers, rows))
             })
             .collect::<Result<_, Failure>>()?;
@@ -397,10 +393,11 @@ impl Stage for Ste {
         self.warn(context, &keyed, pair.pinion.specification.module);
         self.tell_if_simpler_does(context, (&pair, &base), (&keyed, &simple))?;
         pressures::warn(context, &base, &keyed);
+        self.warn_of_friction(context, &keyed);
         let none = || Table::from_rows(of_curve, Vec::new());
         let curves = Table::concatenated(parts).and_then(|curves| curves.map_or_else(none, Ok));
         let mut tables = vec![
-            summary(stated).only(&narrowed(summary(stated).schema())).table(&keyed).map_err(failed)?,
+            summary(stated, rubs).only(&narrowed(summary(stated, rubs).schema())).table(&keyed).map_err(failed)?,
             curves.map_err(failed)?,
             harmonics(stated)
                 .only(&narrowed(harmonics(stated).schema()))
@@ -416,7 +413,7 @@ impl Stage for Ste {
             for &((design, name, deviation), torque) in &tasks {
                 context.check_stop()?;
                 let (name, load) = (name.as_str(), Load { torque, deviation: *deviation });
-                let loading = LoadCase::new(&base, design, torque);
+                let loading = self.loading(&base, design, torque);
                 let (taken, sum) = samples::taken(&loading, self.first_sample, self.samples);
                 rows.extend(taken.into_iter().map(|sample| (name, load, sample)));
                 sums.push((name, load, sum));
@@ -435,12 +432,13 @@ impl Stage for Ste {
                 .map(|&((design, name, deviation), torque)| {
                     context.check_stop()?;
                     let load = Load { torque, deviation: *deviation };
-                    let cells = LoadCase::new(&base, design, torque).map(self.pressure_positions, strips);
+                    let cells = self.loading(&base, design, torque).map(self.pressure_positions, strips);
                     Ok(cells.into_iter().map(|cell| (name.as_str(), load, cell)).collect())
                 })
                 .collect::<Result<_, Failure>>()?;
             tables.push(pressures::map(stated).table_of(&maps.iter().flatten().copied()).map_err(failed)?);
         }
+        tables.extend(self.along_path(context, &base, &tasks)?);
         context.work.add(&base.work());
         Ok(tables)
     }

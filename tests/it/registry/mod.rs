@@ -1,6 +1,7 @@
 //! What every registered kind, family, method and optimiser promises, whoever adds one: it is named, documented, can be
 //! read, built and run, and gives exactly the tables it declares.
 
+mod friction;
 mod goals;
 mod members;
 mod profiles;

@@ -7,6 +7,7 @@ pub mod contact;
 pub mod finite_elements;
 #[cfg(test)]
 pub(crate) mod fixtures;
+pub mod friction;
 pub mod geometry;
 pub mod iso1328;
 pub mod material;

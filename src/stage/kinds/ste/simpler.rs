@@ -14,7 +14,6 @@ use declare::error::Failure;
 use declare::number::significant;
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::transmission_error::cycle::MeshCycle;
-use gearmesh::gear::transmission_error::load_case::LoadCase;
 use studygraph::warning::{Cases, Warning};
 
 impl Ste {
@@ -54,7 +53,7 @@ impl Ste {
         let design = simpler::long_relief(amount, pair).ok()?;
         self.deviations.combinations().iter().try_fold(0.0_f64, |largest, deviation| {
             let off = deviation.on(&design, pair).ok()?;
-            Some(largest.max(LoadCase::new(cycle, &off, torque).peak_to_peak()))
+            Some(largest.max(self.loading(cycle, &off, torque).peak_to_peak()))
         })
     }
 }

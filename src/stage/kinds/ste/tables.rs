@@ -2,6 +2,7 @@
 //!
 //! Must not know: how a curve is found.
 
+use super::friction::{self, Left};
 use super::pressures::Contacts;
 use super::{Answer, pressures};
 use crate::stage::cases::{DEVIATIONS, Deviation};
@@ -39,7 +40,8 @@ pub fn keyed<'a, T>(name: &str, description: &str, stated: &[usize]) -> Columns<
     })
 }
 
-pub fn summary<'a>(stated: &[usize]) -> Columns<Keyed<'a>> {
+/// Those of friction are there where it is stated.
+pub fn summary<'a>(stated: &[usize], rubs: bool) -> Columns<Keyed<'a>> {
     let mean = "Integral mean of the transmission error over the mesh cycle.";
     let variance = "Integral mean of the squared deviation from the mean.";
     let reciprocal = "f = 1/variance (mei2016, equation 16); NaN where nothing varies.";
@@ -63,7 +65,9 @@ pub fn summary<'a>(stated: &[usize]) -> Columns<Keyed<'a>> {
         .float("largest_load_share", "", "Largest share of the load on one pair.", |row| {
             row.2.summary.largest_load_share
         });
-    of_doubt(GEARS.into_iter().fold(pressures::of_summary(columns), of_root))
+    let columns = of_doubt(GEARS.into_iter().fold(pressures::of_summary(columns), of_root));
+    let columns = if rubs { friction::of_summary(columns) } else { columns };
+    columns
         .integer("positions", "Positions per base pitch that were used.", |row| row.2.settings.positions)
         .integer("slices", slices, |row| row.2.settings.slices)
         .float("error_estimate", "", error, |row| row.2.error)
@@ -150,12 +154,14 @@ pub struct OfCurve<'a> {
     point: &'a Point,
     /// Of its pairs, where somebody wants them.
     pub contacts: Option<&'a Contacts>,
+    /// By friction, where somebody wants it.
+    pub left: Option<Left>,
 }
 
 pub type PointRow<'a> = Keyed<'a, OfCurve<'a>>;
 
-/// By far the longest tables.
-pub fn curve<'a>(stated: &[usize]) -> Columns<PointRow<'a>> {
+/// By far the longest tables. Columns of friction are there where it is stated.
+pub fn curve<'a>(stated: &[usize], rubs: bool) -> Columns<PointRow<'a>> {
     let description = "Transmission error over one mesh cycle, with its extrema. Where the number of pairs changes there are \
                        two rows, one for each side.";
     let position = "Distance from where a pair starts contact, along the line of action.";
@@ -205,18 +211,24 @@ pub fn curve<'a>(stated: &[usize]) -> Columns<PointRow<'a>> {
             row.2.point.root_stress.map_or(f64::NAN, |of_gears| of_gears[1])
         })
         .but(Column::on_demand);
-    pressures::of_curve(columns)
+    let columns = pressures::of_curve(columns);
+    if rubs { friction::of_curve(columns) } else { columns }
 }
 
-/// The points of a curve, and the contacts of their pairs, or none.
-pub type Found = (Vec<Point>, Vec<Contacts>);
+/// The points of a curve, and of each the contacts of its pairs and what friction leaves, or none.
+pub struct Found {
+    pub points: Vec<Point>,
+    pub contacts: Vec<Contacts>,
+    pub left: Vec<Left>,
+}
 
 /// The points of curves, in the order of the keys, or the table sorts every row.
 pub fn points<'a>(curves: &'a [Keyed<'a, Found>]) -> impl Iterator<Item = PointRow<'a>> + Clone {
-    curves.iter().flat_map(|(design, load, (points, contacts))| {
-        (1..)
-            .zip(points)
-            .map(move |(number, point)| (*design, *load, OfCurve { number, point, contacts: contacts.get(number - 1) }))
+    curves.iter().flat_map(|(design, load, found)| {
+        (1..).zip(&found.points).map(move |(number, point)| {
+            let (contacts, left) = (found.contacts.get(number - 1), found.left.get(number - 1).copied());
+            (*design, *load, OfCurve { number, point, contacts, left })
+        })
     })
 }
 

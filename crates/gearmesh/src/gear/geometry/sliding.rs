@@ -44,6 +44,22 @@ impl GearPair {
         (s - self.zone_points().c) * turning
     }
 
+    /// H_V of the geometry alone, with half of the load on each of two pairs: π(u + 1)/(z1 u)·(1 − ε_α + ε1² + ε2²) with the
+    /// contact ratios ε1 and ε2 of the pinion's and the gear's addendum; none where the pitch point is not in single contact, for
+    /// which the formula is. Sources: Ohlendorf, Verlustleistung und Erwärmung von Stirnrädern, dissertation, TU München 1958;
+    /// ISO/TR 14179-2:2001.
+    #[must_use]
+    pub fn tooth_loss_factor(&self) -> Option<f64> {
+        let points = self.zone_points();
+        if !(points.b <= points.c && points.c <= points.d) {
+            return None;
+        }
+        let [first, second] = [points.e - points.c, points.c - points.a].map(|length| length / self.base_pitch);
+        let [pinion, gear] = [&self.pinion, &self.gear].map(|gear| f64::from(gear.specification.teeth));
+        let shares = 1.0 - (first + second) + first * first + second * second;
+        Some(std::f64::consts::PI * (1.0 / pinion + 1.0 / gear) * shares)
+    }
+
     /// j at the thicknesses that the teeth have.
     #[must_use]
     pub fn backlash(&self) -> Backlash {

@@ -115,7 +115,7 @@ impl LoadCase<'_> {
 
     /// Adds the points of a span; where it joins the one before smoothly their common point is taken once.
     pub(super) fn extend(&self, points: &mut Vec<Point>, span: &Span, states: &[Equilibrium; NODES], wanted: Wanted) {
-        points.extend((joined(points, span)..NODES).map(|node| {
+        points.extend((self.joined(points, span)..NODES).map(|node| {
             let position = span.position(&self.cycle.rows, node);
             self.point(position, span.pairs, &states[node], wanted)
         }));
@@ -145,7 +145,7 @@ impl LoadCase<'_> {
                 return self.extend(&mut points, span, states, wanted);
             }
             let here = self.points(span, states, wanted);
-            points.extend_from_slice(&here[joined(&points, span)..]);
+            points.extend_from_slice(&here[self.joined(&points, span)..]);
             if wanted.pressure {
                 pressure.spans.push((*span, here.map(|point| point.pressed.map_or(0.0, |pressed| pressed.largest))));
             }
@@ -229,6 +229,13 @@ impl LoadCase<'_> {
         harmonics::mean_and_variance(self.cycle.period(), &trace.nodes(&self.cycle.rows)).1
     }
 
+    /// How many of a span's points are there already: where two spans join smoothly, their common one.
+    #[allow(clippy::float_cmp)] // the start of a span is a copy of the end of the one before
+    fn joined(&self, points: &[Point], span: &Span) -> usize {
+        let is_same = |last: &Point| last.cycle_position == span.start && last.pairs == span.pairs;
+        usize::from(points.last().is_some_and(is_same) && !self.jumps_at(span.start))
+    }
+
     /// Room for the curve: `more` spans are added at zone ends, relief starts and first touches, or cut for integrals.
     fn no_points(&self, wanted: Wanted, more: f64) -> Vec<Point> {
         let spans = self.cycle.period() / self.span_length(wanted.harmonics) + more;
@@ -274,10 +281,4 @@ fn insert(points: &mut Vec<Point>, new: Point) {
     let before = |point: &&Point| point.pairs == new.pairs && point.cycle_position <= new.cycle_position;
     let behind = points[zone..].iter().take_while(before).count();
     points.insert(zone + behind, new);
-}
-
-/// How many of a span's points are there already: where two spans join smoothly, their common one.
-#[allow(clippy::float_cmp)] // the start of a span is a copy of the end of the one before
-fn joined(points: &[Point], span: &Span) -> usize {
-    usize::from(points.last().is_some_and(|last| last.cycle_position == span.start && last.pairs == span.pairs))
 }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::count::Count;
 use super::cycle::{Elasticity, MeshCycle};
 use super::flanks::Flanks;
+use super::friction::Resisted;
 use super::sliced::Sliced;
 use super::within_reach::WithinReach;
 use crate::gear::contact::CornerContact;
@@ -30,7 +31,7 @@ pub struct LoadCase<'a> {
     pub(super) design: &'a Design,
     pub(super) flanks: Arc<Flanks<'a>>,
     pub(super) regime: Regime<'a>,
-    touching: Touching,
+    pub(super) touching: Touching,
     /// Cycle positions at which a profile is not smooth, ascending.
     pub(super) breaks: Arc<[f64]>,
     /// Penetrations at which the load of a pair is not smooth, besides 0.
@@ -57,11 +58,13 @@ pub(super) enum Regime<'a> {
     CoupledPairs,
     /// Each slice's load deflects all others.
     CoupledSlices(Arc<Sliced<'a>>),
+    /// Friction of the flanks takes part, beside what holds what.
+    Resisted(Arc<Resisted<'a>>),
 }
 
 /// Where a pair may touch.
 #[derive(Clone, Copy)]
-enum Touching {
+pub(super) enum Touching {
     LineOfAction,
     /// With corner contact.
     Anywhere {
@@ -235,7 +238,11 @@ impl<'a> LoadCase<'a> {
 
     /// Where slices hold each other.
     pub(super) fn slices(&self) -> Option<&Sliced<'a>> {
-        if let Regime::CoupledSlices(slices) = &self.regime { Some(slices) } else { None }
+        match &self.regime {
+            Regime::CoupledSlices(slices) => Some(slices),
+            Regime::Resisted(resisted) => resisted.slices(),
+            Regime::Unloaded | Regime::Pairs | Regime::CoupledPairs => None,
+        }
     }
 
     /// The same without the cuts that only integrals need: for values at points, and for extrema, which are refined on the
@@ -255,6 +262,9 @@ impl<'a> LoadCase<'a> {
     /// with corner contact where the load makes them be looked at farther out, or less far.
     #[must_use]
     pub fn with_torque(&self, torque: f64) -> Self {
+        if let Regime::Resisted(resisted) = &self.regime {
+            return self.without_friction(resisted).with_torque(torque).with_friction(resisted.friction());
+        }
         let is_anywhere = !self.touches_on_line();
         if self.force <= 0.0 || torque <= 0.0 || (is_anywhere && self.flanks.is_surface) {
             return Self::new(self.cycle, self.design, torque);
@@ -325,6 +335,9 @@ impl<'a> LoadCase<'a> {
 
     /// The same whatever the pairs, their faces and their laws are.
     pub(super) fn in_general(&self, position: f64, pairs: usize) -> Equilibrium {
+        if let Some((_, state)) = self.resisted(position, pairs) {
+            return state;
+        }
         let mut nearest = None;
         let reach = self.within_reach(position, pairs, None, &mut nearest);
         let (balance, peaks) = self.balance(&reach, nearest.as_ref());
@@ -343,9 +356,10 @@ impl<'a> LoadCase<'a> {
     }
 
     /// How far the loads of all others would press the flanks of a pair into each other, if it carried nothing: of the sign of
-    /// its penetration, but smooth where it takes up load. None where slices hold each other, or there are no others.
+    /// its penetration, but smooth where it takes up load. None where slices hold each other, friction takes part, or there are no
+    /// others.
     pub(super) fn pressed_by_others(&self, position: f64, pairs: usize, spring: usize) -> Option<f64> {
-        if matches!(self.regime, Regime::Unloaded | Regime::CoupledSlices(_)) {
+        if matches!(self.regime, Regime::Unloaded | Regime::CoupledSlices(_) | Regime::Resisted(_)) {
             return None;
         }
         let s = self.cycle.path_position(position, spring);
@@ -375,6 +389,9 @@ impl<'a> LoadCase<'a> {
     #[must_use]
     pub fn unexplained_by_slices(&self, position: f64, pairs: usize) -> Option<[f64; 2]> {
         let slices = self.slices()?;
+        if let Some((loading, _)) = self.resisted(position, pairs) {
+            return loading.unexplained_by_slices(position, pairs);
+        }
         let reach = self.within_reach(position, pairs, None, &mut None);
         let above = self.alone(reach.nearest_position(), &mut None);
         Some(slices.unexplained(self.cycle, &reach, [self.force, above]))
@@ -384,6 +401,9 @@ impl<'a> LoadCase<'a> {
     /// its spring.
     pub(super) fn loads_of_slices(&self, position: f64, pairs: usize) -> Option<Vec<(usize, Vec<f64>)>> {
         let slices = self.slices()?;
+        if let Some((loading, _)) = self.resisted(position, pairs) {
+            return loading.loads_of_slices(position, pairs);
+        }
         let reach = self.within_reach(position, pairs, None, &mut None);
         let above = self.alone(reach.nearest_position(), &mut None);
         let loads = slices.line_loads(self.cycle, &reach, [self.force, above]);

@@ -15,6 +15,7 @@ pub mod doubt;
 mod ends;
 pub mod face_map;
 mod flanks;
+pub mod friction;
 pub mod hunting;
 pub mod load_case;
 mod path;

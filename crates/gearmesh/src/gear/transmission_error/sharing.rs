@@ -21,7 +21,8 @@ impl<'a> LoadCase<'a> {
     pub(super) fn balance(&self, reach: &WithinReach, nearest: Option<&InSeries<'a>>) -> (Balance, Option<PerSpring>) {
         let slices = match &self.regime {
             Regime::Unloaded => return (complementarity::unloaded(reach.gaps()), None),
-            Regime::Pairs | Regime::CoupledPairs => None,
+            // Friction is beside what is shared here.
+            Regime::Pairs | Regime::CoupledPairs | Regime::Resisted(_) => None,
             Regime::CoupledSlices(slices) => Some(slices),
         };
         self.count.solves(1);

@@ -7,6 +7,7 @@ mod broken_tips;
 mod corner;
 mod doubt;
 mod extremes;
+mod friction;
 mod plain;
 mod pressure;
 mod root_stress;
