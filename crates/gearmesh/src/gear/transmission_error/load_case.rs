@@ -42,9 +42,9 @@ pub struct LoadCase<'a> {
     /// Whether spans next to a change are cut until their nodes can follow: for what is integrated.
     pub(super) refines: bool,
     /// How much farther apart each pair is than its flanks say, by its spring \[m\].
-    distances: Option<PerSpring>,
+    pub(super) distances: Option<PerSpring>,
     /// Between what these may be.
-    distances_between: [f64; 2],
+    pub(super) distances_between: [f64; 2],
 }
 
 /// What holds what when the load spreads; each costs more than the one before.
