@@ -85,6 +85,21 @@ impl LoadCase<'_> {
         self.with_distances_between(deviations.range())
     }
 
+    /// The same for pairs that are farther apart than their flanks say, by amounts between these \[m\].
+    fn with_distances_between(self, distances_between: [f64; 2]) -> Self {
+        let mut other = Self { distances_between, ..self };
+        if !other.touches_on_line() {
+            other.touching = other.corners();
+            other.follow();
+        }
+        other
+    }
+
+    /// The same with pairs so much farther apart, by their springs.
+    fn with_distances(&self, distances: PerSpring) -> Self {
+        Self { distances: Some(distances), ..self.clone() }
+    }
+
     /// The transmission error \[m\] at `positions` equidistant positions of a base pitch of mesh, of a load case that was made
     /// with the same deviations: from where pair number `pitch` starts contact in A on, the last position one short of where
     /// the next does.

@@ -168,7 +168,7 @@ impl<'a> LoadCase<'a> {
     }
 
     /// Finds the gaps wherever pairs may touch.
-    fn follow(&mut self) {
+    pub(super) fn follow(&mut self) {
         let window = match self.touching {
             Touching::LineOfAction => (self.cycle.pair.start_of_contact, self.cycle.pair.end_of_contact),
             Touching::Anywhere { window, .. } => window,
@@ -178,7 +178,7 @@ impl<'a> LoadCase<'a> {
 
     /// With corner contact: between which path positions anything can touch, and the gap where the model ends. What quick
     /// copies there may be makes no difference.
-    fn corners(&self) -> Touching {
+    pub(super) fn corners(&self) -> Touching {
         let (pair, flanks) = (&self.cycle.pair, &self.flanks);
         let (first, last) = self.cycle.path.window();
         // A little inside, for rounding.
@@ -293,21 +293,6 @@ impl<'a> LoadCase<'a> {
             Touching::Anywhere { window, .. } if s < window.0 || s > window.1 => None,
             _ => self.flanks.gap(s),
         }
-    }
-
-    /// The same for pairs that are farther apart than their flanks say, by amounts between these \[m\].
-    pub(super) fn with_distances_between(self, distances_between: [f64; 2]) -> Self {
-        let mut other = Self { distances_between, ..self };
-        if !other.touches_on_line() {
-            other.touching = other.corners();
-            other.follow();
-        }
-        other
-    }
-
-    /// The same with pairs so much farther apart, by their springs.
-    pub(super) fn with_distances(&self, distances: PerSpring) -> Self {
-        Self { distances: Some(distances), ..self.clone() }
     }
 
     /// Whether every pair is as far apart as its flanks say.
