@@ -92,6 +92,7 @@ beyond = {
     "empty_file", "no_designs", "condition_of_a_figure", "constraint_sign", "constraint_unit", "constraint_unknown_column",
     "constraints_contradict", "objective_unknown", "objectives_for_one", "sizing_objectives", "units_of_a_claim",
     "rating_design_alone", "trace_the_other_way", "trace_in_millimetres", "trace_without_a_deviation",
+    "trace_in_no_file",
 }
 seen = []
 for path in sorted(pathlib.Path("tests/bad").glob("*.yaml")):
