@@ -19,7 +19,7 @@ stages:
       made:
         - measured: { gear: pinion, file: traces/tooth.csv }
   stiffness: { kind: stiffness, pair: pair, method: energy }
-  ste: { kind: ste, pair: pair, stiffness: stiffness, designs: designs, torque: 100 N m }
+  ste: { kind: ste, stiffness: stiffness, designs: designs, torque: 100 N m }
 ";
 
 /// A relief of so many micrometres, as a machine with decimal commas and lines of Windows writes it.
@@ -108,7 +108,7 @@ fn what_is_wrong_with_a_file_stands_in_it() {
     let reversed = [&lines[..4], &lines[4..].iter().rev().copied().collect::<Vec<_>>()[..]].concat().join("\n");
     for (text, message) in [
         (without(20, 40), "21:1: there is a gap between points 16 and 17"),
-        (other(30, "9,000;55"), "31:7: deviation 27 stands 57"),
+        (other(30, "8,6695;55"), "31:8: deviation 27 stands 57"),
         (reversed, "4:1: `roll_lengths` falls all along"),
         (other(30, "9,0x;-3"), "31:1: "),
         (other(30, "8,6695;NaN"), "31:8: `NaN um` is not a number"),

@@ -95,7 +95,7 @@ beyond = {
     "constraints_contradict", "objective_unknown", "objectives_for_one", "sizing_objectives", "units_of_a_claim",
     "rating_design_alone", "trace_the_other_way", "trace_in_millimetres", "trace_without_a_deviation",
     "fit_unknown_path", "fit_unknown_cell", "fit_meets_nothing", "fit_of_too_little", "fit_bounds_upside_down",
-    "fit_of_itself", "fit_meets_itself", "friction_at_corners",
+    "fit_of_itself", "fit_meets_itself", "friction_at_corners", "trace_in_no_file",
 }
 seen = []
 for path in sorted(pathlib.Path("tests/bad").glob("*.yaml")):

@@ -67,6 +67,30 @@ impl Drop for Watching {
     }
 }
 
+/// Two stages with a table beside them.
+const TRACED: &str = "\
+study: quick
+stages:
+  pair: { kind: geometry, module: 3 mm, pinion: { teeth: 19, face_width: 20 mm, bore_radius: 10 mm }, gear: { teeth: 48, face_width: 18 mm, bore_radius: 20 mm } }
+  designs: { kind: modification, pair: pair, designs: { made: [measured: { gear: pinion, file: below/trace.csv }] } }
+";
+
+#[test]
+fn a_table_that_the_study_names_is_watched_too() {
+    let desk = Desk::with("quick.yaml");
+    let trace = "roll_lengths [mm], deviations [um]\n4,-2\n8,0\n12,1\n16,-4\n";
+    fs::create_dir(desk.path("below")).unwrap();
+    fs::write(desk.path("quick.yaml"), TRACED).unwrap();
+    fs::write(desk.path("below/trace.csv"), trace).unwrap();
+    let watching = Watching::start(&desk);
+    assert_eq!(watching.after(0), (1, String::new()));
+    fs::write(desk.path("below/trace.csv"), trace.replace("12,1", "12,x")).unwrap();
+    let (version, message) = watching.after(1);
+    assert!(version == 2 && message.starts_with("below/trace.csv:4:4: `x um` is not a number"), "{message}");
+    fs::write(desk.path("below/trace.csv"), trace.replace("12,1", "12,2")).unwrap();
+    assert_eq!(watching.after(2), (3, String::new()));
+}
+
 #[test]
 fn the_page_follows_what_is_saved() {
     let desk = Desk::with("quick.yaml");

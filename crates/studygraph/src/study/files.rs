@@ -95,7 +95,7 @@ pub(super) fn attach(text: &str, root: &Node, path: &Path) -> Result<(String, Ve
     let mut attached = Vec::with_capacity(missing.len());
     for (name, place) in missing {
         let file = beside(path, &name).map_err(|found| refused(found.at(place)))?;
-        let read = read::beside(&file, text, place, path)?;
+        let read = read::beside(&file, &name, (text, place, path))?;
         let read = read.trim_start_matches('\u{feff}').replace("\r\n", "\n").replace('\r', "\n");
         let read = read.trim_end().to_owned();
         // A name in double quotes of JSON is one in those of YAML.

@@ -31,13 +31,12 @@ pub fn read(path: &Path) -> Result<String, LoadError> {
     String::from_utf8(bytes).map_err(|error| not_utf8(path, error.as_bytes(), error.utf8_error().valid_up_to()))
 }
 
-/// Reads a whole file of UTF-8 that the study at `study` names at `place` of its `text`.
+/// Reads a whole file of UTF-8 that the study at `study` calls `shown` at `place` of its `text`.
 ///
 /// # Errors
 /// When it cannot be read, is not a file, is too large or is not UTF-8.
-pub fn beside(path: &Path, text: &str, place: Place, study: &Path) -> Result<String, LoadError> {
+pub fn beside(path: &Path, shown: &str, (text, place, study): (&str, Place, &Path)) -> Result<String, LoadError> {
     let refused = |found: Diagnostic| LoadError::new(study, text.to_owned(), found.at(place));
-    let shown = path.display();
     // What is no file, a pipe for one, might be waited for.
     if path.exists() && !path.is_file() {
         return Err(refused(Diagnostic::new(format!("`{shown}` is not a file"))));

@@ -187,7 +187,7 @@ impl Families {
             Shape::List(of) => {
                 let item = self.shape(of, field, chooses);
                 let mut ways = vec![json!({ "type": "array", "items": item }), item.clone()];
-                if let Shape::Quantity { .. } | Shape::Number { .. } = of {
+                if matches!(of, Shape::Quantity { .. } | Shape::Number { .. }) && item.get("examples").is_some() {
                     ways.extend(leaf::many(&item));
                 }
                 json!({ "anyOf": ways })

@@ -196,6 +196,7 @@ pub fn many(single: &Value) -> [Value; 2] {
                 "description": "The numbers, without a unit.",
                 "type": "array",
                 "items": { "type": "number" },
+                "examples": [[-3, -1, 0.5]],
             },
         },
     });

@@ -140,6 +140,22 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// As it is, and behind a header with which its lines are read: the place is in the table, or in the study.
+    #[test]
+    fn any_table_gets_an_answer(text in "[0-9a-c,;.:#\\[\\] \t\"µ\u{feff}\n\r-]{0,120}", has_header in any::<bool>()) {
+        let folder = tempfile::tempdir().unwrap();
+        let study = folder.path().join("t.yaml");
+        std::fs::write(&study, VALID.replace("module: 3 mm", "file: t.csv\n    module: 3 mm")).unwrap();
+        let header = if has_header { "teeth [mm]; note [-]\n" } else { "" };
+        std::fs::write(folder.path().join("t.csv"), format!("{header}{text}")).unwrap();
+        let error = load_file(&study, &PROGRAM).err().expect("it has fields that are none");
+        check_place(&error);
+    }
+}
+
 /// The answer to a text that was made to hurt, and how long it took.
 fn hurt(what: &str, text: &str) -> String {
     let start = Instant::now();
