@@ -92,6 +92,9 @@ enum Source {
     Follows(Formula),
 }
 
+/// Steps that a start takes, about.
+const STEPS_OF_START: usize = 5;
+
 /// A fit.
 struct Fitting {
     of: String,
@@ -395,7 +398,10 @@ impl Stage for Fitting {
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
         let count = self.parameters.len();
         let values: usize = self.goals.iter().map(|goal| goal.targets.len()).sum();
+        let each = 2 * count + 1;
+        let points = 7 + self.starts * STEPS_OF_START * each;
         Estimate::new(true)
+            .taking(points as f64 * self.points.seconds())
             .rows(demand, tables::summary().schema(), RowCount::exact(1))
             .rows(demand, tables::parameters().schema(), RowCount::exact(count))
             .rows(demand, tables::covariance().schema(), RowCount::exact(count * count))
