@@ -202,3 +202,32 @@ fn rows_are_met_in_their_order() {
     assert!((solutions.floats("torque")[0] - 50.0).abs() < 1e-2, "{:?}", solutions.floats("torque"));
     assert_eq!(table(&found, "fit", "residuals").rows(), 7);
 }
+
+/// Tier: closed form; what was printed rounded is an interval. A module of 3 ± 0.005 mm and a profile shift of 0.21 ± 0.005 leave a
+/// tooth thickness of m (π/2 + 2 x tan α) all that lies between its least and its most, and nothing beyond.
+#[test]
+fn some_value_inside_the_printed_intervals_reproduces_a_number_or_none_does() {
+    let vary = "
+      shift: { field: pair.pinion.profile_shift, within: ± 0.005 }
+      module: { field: pair.module, within: ± 0.005 mm }";
+    let pair = PAIR.replace("teeth: 19,", "teeth: 19, profile_shift: 0.21,");
+    let thickness =
+        |module: f64, shift: f64| module * (std::f64::consts::FRAC_PI_2 + 2.0 * shift * libm::tan(20_f64.to_radians()));
+    for (module, shift, is_inside) in [(3.004, 0.2149, true), (2.996, 0.2056, true), (3.0055, 0.2155, false)] {
+        let wanted = thickness(module, shift);
+        let meet = format!(
+            "\n      - {{ cell: \"pair.inspection[gear=pinion].tooth_thickness\", value: {wanted:.9} mm, tolerance: 1e-6 mm }}"
+        );
+        let found = ran(&[&pair, &fit("pair", vary, &meet, "starts: 2")]);
+        let said = said(&found);
+        if is_inside {
+            assert_eq!(said, "one solution meets all within their tolerances", "{module} {shift}");
+            assert!(found["fit"].warnings.is_empty());
+        } else {
+            let off = (wanted - thickness(3.005, 0.215)) / 1e-6;
+            let off = declare::number::significant(off, 3);
+            let nearest = format!("the nearest leave one {off} tolerances off");
+            assert!(said.contains(&nearest) && said.contains("`module` is held at its bound"), "{said}");
+        }
+    }
+}

@@ -20,7 +20,7 @@ use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Named, Port, 
 use declare::Declared;
 use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure, Faults};
-use declare::record::varied::{Axis, Values, Varied};
+use declare::record::varied::{Axis, Form, Spread, Values, Varied};
 use declare::record::{Record, Value};
 use declare::units::{parse_quantity, showing};
 use gearmesh::optimize::least_squares::Answers;
@@ -52,7 +52,8 @@ struct Stated {
     /// The stage whose cells are met; it and what it reads are as in the study but for what is varied.
     #[declared(kinds = ["geometry", "modification", "stiffness", "ste", "rating"])]
     pub of: String,
-    /// Names of parameters, and the fields that they are with their bounds; a field can follow from the other parameters.
+    /// Names of parameters, and the fields that they are with their bounds, or so far to either side of the value in the study; a
+    /// field can follow from the other parameters.
     #[declared(varies = Stated::NAMES.of)]
     pub vary: Varied,
     /// What is to be met.
@@ -73,6 +74,8 @@ pub struct Parameter {
     pub unit: String,
     /// In SI.
     pub bounds: (f64, f64),
+    /// Whether they are about a value that the study states.
+    pub is_interval: bool,
 }
 
 impl Parameter {
@@ -88,6 +91,9 @@ enum Source {
     Free(usize),
     Follows(Formula),
 }
+
+/// Steps that a start takes, about.
+const STEPS_OF_START: usize = 5;
 
 /// A fit.
 struct Fitting {
@@ -121,7 +127,9 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let goals = Faults::collect(goals.map(|(met, record)| Goal::read(met, record, (&stated.of, &schemas))))?;
     let (parameters, sources) = parameters(&stated.vary.axes)?;
     let values: usize = goals.iter().map(|goal| goal.targets.len()).sum();
-    if values < parameters.len() {
+    // Whether intervals hold what meets a value is asked of any number of them.
+    let are_intervals = parameters.iter().all(|parameter| parameter.is_interval);
+    if values < parameters.len() && !are_intervals {
         let (few, many) = (words::count(values, "value"), words::count(parameters.len(), "parameter"));
         return Err(Diagnostic::new(format!("{few} cannot determine {many}"))
             .at(record.place_of(Stated::NAMES.meet))
@@ -149,13 +157,17 @@ fn parameters(axes: &[Axis]) -> Result<(Vec<Parameter>, Vec<Source>), Diagnostic
             let message = format!("`{}` is a column of the table `solutions`; take another name", axis.name);
             return Err(Diagnostic::new(message).at(axis.place));
         }
-        let bounds = match &axis.values {
-            Values::Between(low, high) => (*low, *high),
+        let (bounds, is_interval) = match &axis.values {
+            Values::Between(low, high) => ((*low, *high), false),
+            // What was printed rounded is somewhere within.
+            Values::Spread(Spread { form: Form::Within(half, _), about, .. }) => {
+                (((about - half).max(axis.range.0), (about + half).min(axis.range.1)), true)
+            }
             Values::Follows(_) => continue,
             Values::Each(_) | Values::Spread(_) => {
                 return Err(Diagnostic::new(format!("`{}` has no bounds to be fitted within", axis.name))
                     .at(axis.values_place)
-                    .help("write `from` and `to`, without a `count`"));
+                    .help("write `from` and `to` without a `count`, or `within: ± …` of the value in the study"));
             }
         };
         if axis.multiple.is_some() {
@@ -164,7 +176,7 @@ fn parameters(axes: &[Axis]) -> Result<(Vec<Parameter>, Vec<Source>), Diagnostic
             return Err(Diagnostic::new(message).at(axis.place).help("sweep them: `kind: sweep` takes all `values`"));
         }
         let (name, path, unit) = (axis.name.clone(), axis.path.clone(), axis.unit.clone());
-        parameters.push(Parameter { name, path, unit, bounds });
+        parameters.push(Parameter { name, path, unit, bounds, is_interval });
     }
     if parameters.is_empty() {
         return Err(Diagnostic::new("nothing is free: every field follows from others").at(axes[0].values_place));
@@ -187,7 +199,7 @@ fn parameters(axes: &[Axis]) -> Result<(Vec<Parameter>, Vec<Source>), Diagnostic
 
 /// The values that the study has; none where it has several of a field, or one outside of the bounds.
 fn own_values(varied: &Varied, parameters: &[Parameter]) -> Option<Vec<f64>> {
-    let free = varied.axes.iter().filter(|axis| matches!(axis.values, Values::Between(..)));
+    let free = varied.axes.iter().filter(|axis| !matches!(axis.values, Values::Follows(_)));
     free.zip(parameters)
         .map(|(axis, parameter)| {
             let entry = axis.slot.entry(&varied.stages[axis.stage].record)?;
@@ -386,7 +398,10 @@ impl Stage for Fitting {
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
         let count = self.parameters.len();
         let values: usize = self.goals.iter().map(|goal| goal.targets.len()).sum();
+        let each = 2 * count + 1;
+        let points = 7 + self.starts * STEPS_OF_START * each;
         Estimate::new(true)
+            .taking(points as f64 * self.points.seconds())
             .rows(demand, tables::summary().schema(), RowCount::exact(1))
             .rows(demand, tables::parameters().schema(), RowCount::exact(count))
             .rows(demand, tables::covariance().schema(), RowCount::exact(count * count))
@@ -400,7 +415,9 @@ impl Stage for Fitting {
         let uncertainty = Uncertainty::of(&best.fit);
         let flat = words::flat(&self.parameters, &uncertainty);
         let rows = self.parameter_rows(best, &uncertainty);
-        let said = words::said(&found, &rows, &flat);
+        // More intervals than values are not meant to be determined.
+        let is_open = best.fit.residuals.len() < self.parameters.len();
+        let said = words::said(&found, &rows, if is_open { "" } else { &flat });
         if said.is_warning {
             (context.warn)(said.text.clone().into());
         }

@@ -46,7 +46,7 @@ pub struct Link {
     /// Ports and where they lead.
     ports: Vec<(Port, Source)>,
     /// What others ask of it.
-    demand: Demand,
+    pub demand: Demand,
     /// Whether it draws random numbers.
     pub uses_seed: bool,
 }

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::chain::{Chain, Tables, Trouble};
 use super::{Class, Column};
-use crate::stage::{Context, Demand, Inputs, Port};
+use crate::stage::{Ahead, Context, Demand, Inputs, Port};
 use declare::error::{Diagnostic, Failure};
 use declare::record::varied::Varied;
 use studygraph::table::data::Table;
@@ -53,6 +53,15 @@ impl Points {
             depends.push((0..columns.len()).filter(does).collect());
         }
         Ok(Self { chain, columns, depends })
+    }
+
+    /// What all stages take at a point, on one thread \[s\].
+    pub fn seconds(&self) -> f64 {
+        let of_link = |link: &super::chain::Link| {
+            let built = (link.kind.build)(&link.record).ok()?;
+            Some(built.estimate(&link.demand, &Ahead::default()).seconds)
+        };
+        self.chain.links.iter().filter_map(of_link).sum()
     }
 
     /// What the stages read of the study.

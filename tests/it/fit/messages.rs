@@ -31,10 +31,8 @@ fn wrong_fits_say_where_and_what_is_near() {
             of(&bore.replace("from: 8 mm, to: 20 mm", "values: [8 mm, 9 mm]"), MEET),
             "`bore` has no bounds to be fitted within",
         ),
-        (
-            of(&bore.replace("from: 8 mm, to: 20 mm", "within: ± 1 mm"), MEET),
-            "`bore` has no bounds to be fitted within",
-        ),
+        (of(&bore.replace("from: 8 mm, to: 20 mm", "normal: 1 mm"), MEET), "`bore` has no bounds to be fitted within"),
+        (of(&bore.replace("from: 8 mm, to: 20 mm", "within: ± 0 mm"), MEET), "`within`"),
         (of("{ teeth: { field: pair.gear.teeth, from: 40, to: 50 } }", MEET), "whole numbers, which cannot be fitted"),
         (of("{ bore: { field: pair.gear.bore_radius, follows: 2 * bare } }", MEET), "nothing is free"),
         (of(&BORES.replace("* bore }", "* bare }"), MEET), "did you mean `bore`"),

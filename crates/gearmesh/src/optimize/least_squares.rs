@@ -125,11 +125,13 @@ impl Search {
         point.iter().zip(&self.bounds).map(|(value, (low, high))| value.clamp(*low, *high)).collect()
     }
 
-    /// Which parameters are at a bound, and would go beyond it.
+    /// Which parameters are at a bound beyond which the sum of squares would fall by more than what counts.
     fn held(&self, point: &[f64], jacobian: &[Vec<f64>], residuals: &[f64]) -> Vec<bool> {
+        let counts = self.gain * dot(residuals, residuals).max(1.0);
         let one = |((value, (low, high)), column): ((&f64, &(f64, f64)), &Vec<f64>)| {
             let rise = dot(column, residuals);
-            (value <= low && rise > 0.0) || (value >= high && rise < 0.0)
+            let is_outward = (value <= low && rise > 0.0) || (value >= high && rise < 0.0);
+            is_outward && rise * rise > counts * dot(column, column)
         };
         point.iter().zip(&self.bounds).zip(jacobian).map(one).collect()
     }

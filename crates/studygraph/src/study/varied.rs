@@ -37,11 +37,6 @@ struct Link {
 /// # Errors
 /// A path that leads nowhere or to no number; values that the field does not take; a stage that has nothing to do with it.
 pub fn varied(stages: Stages, of: &Reference, pairs: &[KeyValue]) -> Result<Varied, Diagnostic> {
-    // A stage of a kind that cannot be meant is told of when all references are looked at.
-    let kind = stages.pairs.iter().find(|pair| pair.key == of.stage).and_then(|pair| kind_of(&pair.node));
-    if kind.is_some_and(|kind| !of.kinds.is_empty() && !of.kinds.contains(&kind)) {
-        return Ok(Varied::default());
-    }
     let mut links = Vec::new();
     link(stages, &of.stage, of.place, &mut Vec::new(), &mut links)?;
     let mut tree = stages.pairs.to_vec();
@@ -89,13 +84,6 @@ pub fn varied(stages: Stages, of: &Reference, pairs: &[KeyValue]) -> Result<Vari
         found.axes.push(axis);
     }
     Ok(found)
-}
-
-/// The kind of a stage as written.
-fn kind_of(stage: &Node) -> Option<&str> {
-    let Content::Mapping(fields) = &stage.content else { return None };
-    let kind = fields.iter().find(|field| field.key == "kind")?;
-    if let Content::Scalar { text, .. } = &kind.node.content { Some(text) } else { None }
 }
 
 /// A place that no text has.
