@@ -8,13 +8,18 @@ use gearmesh::gear::friction::members;
 use gearstudy::program;
 use studygraph::table::data::Table;
 
-/// Ways to write each law; the last ones are beyond what they are for.
+/// Ways to write each law; three of them beyond what the law is for.
 const LAWS: &[(&str, &str, &str, Option<&str>)] = &[
     ("constant", "{ coefficient: 0.06 }", "1500 rpm", None),
     ("iso_14179_2", "{ viscosity: 40 mPa s, roughness: 0.4 um }", "1500 rpm", None),
     ("iso_14179_2", "{ viscosity: 0.04 Pa s, roughness: 400 nm, lubricant_factor: 0.8 }", "157 rad/s", None),
     ("benedict_kelley", "{ viscosity: 40 mPa s }", "1500 rpm", None),
-    ("xu", "{ viscosity: 10 mPa s, roughness: 0.3 um }", "1500 rpm", None),
+    (
+        "xu",
+        "{ viscosity: 10 mPa s, roughness: 0.3 um }",
+        "1500 rpm",
+        Some("the slide-to-roll ratio is 1.3; the law `xu` of friction is known up to 1"),
+    ),
     (
         "iso_14179_2",
         "{ viscosity: 40 mPa s, roughness: 0.4 um }",

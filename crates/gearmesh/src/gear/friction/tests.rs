@@ -1,5 +1,7 @@
 //! Laws of friction against other people's programs, other units, and what they must tend to.
 
+#![allow(clippy::float_cmp)] // where a result must be exact, that is what is asked
+
 use super::benedict_kelley::BenedictKelley;
 use super::constant::Constant;
 use super::iso_14179_2::Iso14179;

@@ -13,7 +13,6 @@ use std::sync::Arc;
 use super::cycle::MeshCycle;
 use super::load_case::{Equilibrium, LoadCase, Regime};
 use super::sliced::Sliced;
-use super::trace::NODES;
 use crate::gear::contact::flattening::combined_radius;
 use crate::gear::friction::{Law, Limit, Rolling};
 use crate::gear::geometry::Side;
@@ -292,10 +291,10 @@ impl<'a> LoadCase<'a> {
             beyond.see(&friction.law.limits(&self.at_pitch_point(friction)));
         }
         cut.walk(cut.span_length(0), |span, states| {
-            for node in 0..NODES {
+            for (node, state) in states.iter().enumerate() {
                 let weight = span.weight(&cycle.rows, node) / cycle.period();
                 let position = span.position(&cycle.rows, node);
-                for rubbing in self.rubbing_at(&loaded, position, span.pairs, &states[node]) {
+                for rubbing in self.rubbing_at(&loaded, position, span.pairs, state) {
                     sliding += weight * rubbing.load * rubbing.rolling.sliding().abs();
                     power += weight * rubbing.power();
                     let slides = rubbing.rolling.sliding() != 0.0;
