@@ -17,6 +17,7 @@ mod extremes;
 mod fronts;
 mod fuzz;
 mod hunting;
+mod inspection;
 mod layering;
 mod numbers;
 mod page;
