@@ -18,6 +18,7 @@ mod fit;
 mod fronts;
 mod fuzz;
 mod hunting;
+mod inspection;
 mod layering;
 mod numbers;
 mod page;
