@@ -58,14 +58,14 @@ const DIGITS: usize = 8;
 /// A study that is refused.
 pub struct Refused {
     error: LoadError,
-    changes: Changes,
+    changes: Box<Changes>,
     /// The stages with which nothing is wrong, nor with any that they read from; none where that cannot be told.
     pub sound: Option<Box<Study>>,
 }
 
 impl From<LoadError> for Refused {
     fn from(error: LoadError) -> Self {
-        Self { error, changes: Changes::default(), sound: None }
+        Self { error, changes: Box::default(), sound: None }
     }
 }
 
@@ -96,7 +96,8 @@ pub fn examine(text: &str, path: &Path, program: &'static Program, settings: &Se
     match (Faults::all(wrong), study) {
         (Ok(()), Some(study)) => Ok(study),
         (Err(wrong), sound) => {
-            Err(Refused { error: LoadError::new(path, text, wrong), changes, sound: sound.map(Box::new) })
+            let error = LoadError::new(path, text, wrong);
+            Err(Refused { error, changes: Box::new(changes), sound: sound.map(Box::new) })
         }
         // What is no study has something wrong with it.
         (Ok(()), None) => Err(LoadError::new(path, text, Diagnostic::new("this is not a study")).into()),
