@@ -556,6 +556,10 @@ class MeasuredRelief(Modification):
         flank, or the end of the face, when left out. -10 to 10 m.
     evaluation_end : number [m], optional
         Up to which it is evaluated; the tip, or the other end of the face, when left out. -10 to 10 m.
+    teeth : int, optional
+        z: number of teeth of the gear that was measured; another gear is refused. 4 to 10000.
+    module : number [m], optional
+        m: module of the gear that was measured; another gear is refused. 1e-05 to 1 m.
     smoothing : Literal["none", "gaussian"], optional
         What is left out of a trace before it is a flank. Without it: none.
     cutoff : number [m], optional
@@ -579,6 +583,8 @@ class MeasuredRelief(Modification):
         face_positions: Sequence[Quantity] | None = None,
         evaluation_start: Quantity | None = None,
         evaluation_end: Quantity | None = None,
+        teeth: int | None = None,
+        module: Quantity | None = None,
         smoothing: Literal["none", "gaussian"] | None = None,
         cutoff: Quantity | None = None,
     ) -> None:
@@ -591,6 +597,8 @@ class MeasuredRelief(Modification):
             deviations=deviations,
             evaluation_start=evaluation_start,
             evaluation_end=evaluation_end,
+            teeth=teeth,
+            module=module,
             smoothing=smoothing,
             cutoff=cutoff,
         )

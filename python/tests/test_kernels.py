@@ -64,8 +64,8 @@ def test_a_trace_is_points_of_arrays_or_texts(pair, stiffness):
     trace = gs.MeasuredRelief(gear="pinion", roll_lengths=flank, deviations=-0.1 * (flank - middle) ** 2, teeth=19, module=3e-3)
     texts = gs.MeasuredRelief(
         gear="pinion",
-        roll_lengths=[f"{1e3 * length!r} mm" for length in flank],
-        deviations=[f"{-1e5 * (length - middle) ** 2!r} um" for length in flank],
+        roll_lengths=[f"{1e3 * length:.15g} mm" for length in flank],
+        deviations=[f"{-1e5 * (length - middle) ** 2:.15g} um" for length in flank],
     )
     one, other = (gs.transmission_error(stiffness, 80.0, design).peak_to_peak for design in (trace, texts))
     assert one == pytest.approx(other, rel=1e-9) and one > 0

@@ -22,7 +22,7 @@ pub struct Diagnostic {
     /// The field that is meant, where whoever found it knows no places.
     pub field: Option<&'static str>,
     /// Which item of that field's list, from 0.
-    pub item: Option<usize>,
+    pub item: Option<u32>,
     /// What to write instead.
     pub help: Option<String>,
 }
@@ -56,7 +56,8 @@ impl Diagnostic {
     /// About an item of a field's list, counted from 0.
     #[must_use]
     pub fn of_item(self, field: &'static str, item: usize) -> Self {
-        Self { item: Some(item), ..self.of(field) }
+        // No list of a study is longer, and results with a message in them stay small.
+        Self { item: u32::try_from(item).ok(), ..self.of(field) }
     }
 
     #[must_use]

@@ -124,7 +124,7 @@ impl Record {
     pub fn locate(&self, wrong: Diagnostic) -> Diagnostic {
         let place = wrong.field.map_or(self.place, |field| self.place_of(field));
         let item = wrong.field.zip(wrong.item).and_then(|(field, item)| match &self.entry(field)?.value {
-            Value::List(items) => items.get(item).map(|item| item.place),
+            Value::List(items) => items.get(item as usize).map(|item| item.place),
             _ => None,
         });
         wrong.or_at(item.unwrap_or(place))

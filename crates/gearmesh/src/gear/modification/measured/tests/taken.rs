@@ -4,14 +4,14 @@ use super::*;
 use crate::gear::compliance::finite_element::FiniteElement;
 use crate::gear::compliance::{Assumptions, Method};
 use crate::gear::modification::template::Template;
-use declare::declared::{Declared, Registrable, Words, entry};
+use declare::declared::{Registrable, Words, entry};
 use declare::record::{PlacedValue, Value};
 
 /// Tier: second method; a trace of crowning is that crowning to finite elements and their resolved contact.
 #[test]
 fn finite_elements_take_a_trace() {
     let pair = pair();
-    let method = FiniteElement { elements_across: 6, ..FiniteElement::default() };
+    let method = FiniteElement { elements_across: 12, ..FiniteElement::default() };
     let assumptions = Assumptions { contact: ContactLaw::Resolved, ..Assumptions::default() };
     let compliance = method.tabulate(&pair, assumptions).unwrap().compliance;
     let plain = crowned(&pair);
