@@ -9,7 +9,7 @@ mod search;
 mod tables;
 mod words;
 
-use self::goal::{Goal, Met};
+use self::goal::{Goal, Met, Schemas};
 use self::search::{Found, Solution};
 use self::tables::{ParameterRow, ResidualRow, SolutionRow, Summary};
 use crate::stage::formula::{Formula, Names, Outcome};
@@ -49,7 +49,7 @@ meet:
 /// What fields must be so that cells of a stage meet published values: least squares within bounds, and how well it is determined.
 #[derive(Debug, Declared)]
 struct Stated {
-    /// The stage whose cells are met; it and what it reads are as in the study but for what is varied.
+    /// The stage whose cells are met, or those of stages between it and what is varied; all else is as in the study.
     #[declared(kinds = ["geometry", "modification", "stiffness", "ste", "rating"])]
     pub of: String,
     /// Names of parameters, and the fields that they are with their bounds, or so far to either side of the value in the study; a
@@ -98,6 +98,8 @@ const STEPS_OF_START: usize = 5;
 /// A fit.
 struct Fitting {
     of: String,
+    /// Of the stages that are computed anew.
+    names: Vec<String>,
     points: Points,
     axes: Vec<Axis>,
     /// By axis.
@@ -119,12 +121,12 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     if stated.meet.is_empty() {
         return nothing(Stated::NAMES.meet);
     }
-    let schemas = match stated.vary.stages.last() {
-        Some(asked) => chain::built(asked)?.outputs(),
-        None => Vec::new(),
-    };
+    let stages = stated.vary.stages.iter();
+    let stages: Vec<Schemas> = stages
+        .map(|stage| Ok((stage.name.clone(), chain::built(stage)?.outputs())))
+        .collect::<Result<_, Diagnostic>>()?;
     let goals = stated.meet.iter().zip(record.each_inside(Stated::NAMES.meet));
-    let goals = Faults::collect(goals.map(|(met, record)| Goal::read(met, record, (&stated.of, &schemas))))?;
+    let goals = Faults::collect(goals.map(|(met, record)| Goal::read(met, record, &stages)))?;
     let (parameters, sources) = parameters(&stated.vary.axes)?;
     let values: usize = goals.iter().map(|goal| goal.targets.len()).sum();
     // Whether intervals hold what meets a value is asked of any number of them.
@@ -136,15 +138,17 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
             .help("meet more values, or vary fewer fields")
             .into());
     }
-    let mut demand = Demand::default();
-    for goal in &goals {
-        goal.ask(&schemas, &mut demand);
-    }
-    let points = Points::new(&stated.vary, demand)?;
+    let demand = |stage: &Schemas| {
+        let mut demand = Demand::default();
+        goals.iter().for_each(|goal| goal.ask(stage, &mut demand));
+        demand
+    };
+    let points = Points::new(&stated.vary, stages.iter().map(demand).collect())?;
+    let names = stages.into_iter().map(|(name, _)| name).collect();
     let own = own_values(&stated.vary, &parameters);
     let axes = stated.vary.axes;
     let (starts, steps) = (stated.starts, stated.steps);
-    Ok(Box::new(Fitting { of: stated.of, points, axes, sources, parameters, goals, own, starts, steps }))
+    Ok(Box::new(Fitting { of: stated.of, names, points, axes, sources, parameters, goals, own, starts, steps }))
 }
 
 /// The parameters, and where the value of each axis comes from.
@@ -260,7 +264,9 @@ impl Fitting {
             values.map_err(Diagnostic::new)?;
             let found = tables.next().unwrap_or_else(|| Err(String::new())).map_err(Diagnostic::new)?;
             let mut own = Inputs::default();
-            own.ports.insert(self.of.clone(), found.iter().collect());
+            for (name, tables) in self.names.iter().zip(&found) {
+                own.ports.insert(name.clone(), tables.iter().collect());
+            }
             let numbers: Vec<Vec<f64>> = self.goals.iter().map(|goal| goal.found(&own)).collect::<Result<_, _>>()?;
             Ok(numbers.concat())
         };
