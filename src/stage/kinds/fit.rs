@@ -5,14 +5,16 @@
 //! stage computes.
 
 mod goal;
+mod parameters;
 mod search;
 mod tables;
 mod words;
 
 use self::goal::{Goal, Met, Schemas};
+use self::parameters::{Parameter, Source, own_values, parameters};
 use self::search::{Found, Solution};
 use self::tables::{ParameterRow, ResidualRow, SolutionRow, Summary};
-use crate::stage::formula::{Formula, Names, Outcome};
+use crate::stage::formula::{Names, Outcome};
 use crate::stage::quantity::Number;
 use crate::stage::rows::chain;
 use crate::stage::rows::points::{Memory, Points};
@@ -20,8 +22,8 @@ use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Named, Port, 
 use declare::Declared;
 use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure, Faults};
-use declare::record::varied::{Axis, Form, Spread, Values, Varied};
-use declare::record::{Record, Value};
+use declare::record::Record;
+use declare::record::varied::{Axis, Varied};
 use declare::units::{parse_quantity, showing};
 use gearmesh::optimize::least_squares::Answers;
 use gearmesh::optimize::least_squares::uncertainty::{Uncertainty, digits};
@@ -64,32 +66,6 @@ struct Stated {
     /// Steps from each of them, at most.
     #[declared(minimum = 1, maximum = 10_000, default = "50")]
     pub steps: usize,
-}
-
-/// A field that is fitted.
-#[derive(Clone, Debug)]
-pub struct Parameter {
-    pub name: String,
-    pub path: String,
-    pub unit: String,
-    /// In SI.
-    pub bounds: (f64, f64),
-    /// Whether they are about a value that the study states.
-    pub is_interval: bool,
-}
-
-impl Parameter {
-    /// In its unit.
-    fn shown(&self, si: f64) -> f64 {
-        showing(&self.unit)(si)
-    }
-}
-
-/// Where the value of a varied field comes from.
-enum Source {
-    /// Index of the parameter.
-    Free(usize),
-    Follows(Formula),
 }
 
 /// Steps that a start takes, about.
@@ -140,7 +116,9 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     }
     let demand = |stage: &Schemas| {
         let mut demand = Demand::default();
-        goals.iter().for_each(|goal| goal.ask(stage, &mut demand));
+        for goal in &goals {
+            goal.ask(stage, &mut demand);
+        }
         demand
     };
     let points = Points::new(&stated.vary, stages.iter().map(demand).collect())?;
@@ -149,72 +127,6 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let axes = stated.vary.axes;
     let (starts, steps) = (stated.starts, stated.steps);
     Ok(Box::new(Fitting { of: stated.of, names, points, axes, sources, parameters, goals, own, starts, steps }))
-}
-
-/// The parameters, and where the value of each axis comes from.
-fn parameters(axes: &[Axis]) -> Result<(Vec<Parameter>, Vec<Source>), Diagnostic> {
-    let mut parameters: Vec<Parameter> = Vec::new();
-    for axis in axes {
-        let clashes = tables::RESERVED.contains(&axis.name.as_str())
-            || axes.iter().any(|other| tables::deviation_name(&other.name) == axis.name);
-        if clashes {
-            let message = format!("`{}` is a column of the table `solutions`; take another name", axis.name);
-            return Err(Diagnostic::new(message).at(axis.place));
-        }
-        let (bounds, is_interval) = match &axis.values {
-            Values::Between(low, high) => ((*low, *high), false),
-            // What was printed rounded is somewhere within.
-            Values::Spread(Spread { form: Form::Within(half, _), about, .. }) => {
-                (((about - half).max(axis.range.0), (about + half).min(axis.range.1)), true)
-            }
-            Values::Follows(_) => continue,
-            Values::Each(_) | Values::Spread(_) => {
-                return Err(Diagnostic::new(format!("`{}` has no bounds to be fitted within", axis.name))
-                    .at(axis.values_place)
-                    .help("write `from` and `to` without a `count`, or `within: ± …` of the value in the study"));
-            }
-        };
-        if axis.multiple.is_some() {
-            let message =
-                format!("`{}` takes whole numbers, which cannot be fitted: nothing lies between them", axis.name);
-            return Err(Diagnostic::new(message).at(axis.place).help("sweep them: `kind: sweep` takes all `values`"));
-        }
-        let (name, path, unit) = (axis.name.clone(), axis.path.clone(), axis.unit.clone());
-        parameters.push(Parameter { name, path, unit, bounds, is_interval });
-    }
-    if parameters.is_empty() {
-        return Err(Diagnostic::new("nothing is free: every field follows from others").at(axes[0].values_place));
-    }
-    let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
-    let source = |axis: &Axis| {
-        let Values::Follows(text) = &axis.values else {
-            return Ok(Source::Free(names.iter().position(|name| *name == axis.name).unwrap_or_default()));
-        };
-        let wrong = |message: String| Diagnostic::new(message).at(axis.values_place);
-        let formula = Formula::parse(text, &names).map_err(wrong)?;
-        if formula.is_claim() {
-            return Err(wrong(format!("`{text}` is true or false; `follows` is a number")));
-        }
-        Ok(Source::Follows(formula))
-    };
-    let sources = axes.iter().map(source).collect::<Result<Vec<_>, _>>()?;
-    Ok((parameters, sources))
-}
-
-/// The values that the study has; none where it has several of a field, or one outside of the bounds.
-fn own_values(varied: &Varied, parameters: &[Parameter]) -> Option<Vec<f64>> {
-    let free = varied.axes.iter().filter(|axis| !matches!(axis.values, Values::Follows(_)));
-    free.zip(parameters)
-        .map(|(axis, parameter)| {
-            let entry = axis.slot.entry(&varied.stages[axis.stage].record)?;
-            let value = match &entry.value {
-                Value::Quantity(value) | Value::Number(value) => *value,
-                Value::Axis(values) if values.len() == 1 => values[0],
-                _ => return None,
-            };
-            (parameter.bounds.0 <= value && value <= parameter.bounds.1).then_some(value)
-        })
-        .collect()
 }
 
 impl Fitting {
