@@ -231,3 +231,26 @@ fn some_value_inside_the_printed_intervals_reproduces_a_number_or_none_does() {
         }
     }
 }
+
+/// Tier: invariant; a bore and a torque that give a stiffness and a transmission error are found from both, each a cell of its own
+/// stage.
+#[test]
+fn cells_of_several_stages_are_met_together() {
+    let pair = PAIR.replace("14.079 mm", "11 mm");
+    let known = ran(&[&pair, STIFFNESS, &STE.replace("torque: 50 N m", "torque: 64 N m")]);
+    let meet = format!(
+        "
+      - {{ cell: stiffness.summary.single_max, value: {:.9e} N/m }}
+      - {{ cell: ste.summary.mean, value: {:.9} um }}",
+        number(&known, "stiffness", "single_max"),
+        number(&known, "ste", "mean")
+    );
+    let vary = "
+      bore: { field: pair.pinion.bore_radius, from: 8 mm, to: 20 mm }
+      torque: { field: ste.torque, from: 20 N m, to: 90 N m }";
+    let found = ran(&[PAIR, STIFFNESS, STE, &fit("ste", vary, &meet, "starts: 2")]);
+    let solutions = table(&found, "fit", "solutions");
+    assert_eq!(said(&found), "one solution meets all within their tolerances");
+    let (bore, torque) = (solutions.floats("bore")[0], solutions.floats("torque")[0]);
+    assert!((bore - 11.0).abs() < 1e-4 && (torque - 64.0).abs() < 1e-4, "{bore} {torque}");
+}

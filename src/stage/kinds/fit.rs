@@ -5,14 +5,16 @@
 //! stage computes.
 
 mod goal;
+mod parameters;
 mod search;
 mod tables;
 mod words;
 
-use self::goal::{Goal, Met};
+use self::goal::{Goal, Met, Schemas};
+use self::parameters::{Parameter, Source, own_values, parameters};
 use self::search::{Found, Solution};
 use self::tables::{ParameterRow, ResidualRow, SolutionRow, Summary};
-use crate::stage::formula::{Formula, Names, Outcome};
+use crate::stage::formula::{Names, Outcome};
 use crate::stage::quantity::Number;
 use crate::stage::rows::chain;
 use crate::stage::rows::points::{Memory, Points};
@@ -20,8 +22,8 @@ use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Named, Port, 
 use declare::Declared;
 use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure, Faults};
-use declare::record::varied::{Axis, Form, Spread, Values, Varied};
-use declare::record::{Record, Value};
+use declare::record::Record;
+use declare::record::varied::{Axis, Varied};
 use declare::units::{parse_quantity, showing};
 use gearmesh::optimize::least_squares::Answers;
 use gearmesh::optimize::least_squares::uncertainty::{Uncertainty, digits};
@@ -49,7 +51,7 @@ meet:
 /// What fields must be so that cells of a stage meet published values: least squares within bounds, and how well it is determined.
 #[derive(Debug, Declared)]
 struct Stated {
-    /// The stage whose cells are met; it and what it reads are as in the study but for what is varied.
+    /// The stage whose cells are met, or those of stages between it and what is varied; all else is as in the study.
     #[declared(kinds = ["geometry", "modification", "stiffness", "ste", "rating"])]
     pub of: String,
     /// Names of parameters, and the fields that they are with their bounds, or so far to either side of the value in the study; a
@@ -66,38 +68,14 @@ struct Stated {
     pub steps: usize,
 }
 
-/// A field that is fitted.
-#[derive(Clone, Debug)]
-pub struct Parameter {
-    pub name: String,
-    pub path: String,
-    pub unit: String,
-    /// In SI.
-    pub bounds: (f64, f64),
-    /// Whether they are about a value that the study states.
-    pub is_interval: bool,
-}
-
-impl Parameter {
-    /// In its unit.
-    fn shown(&self, si: f64) -> f64 {
-        showing(&self.unit)(si)
-    }
-}
-
-/// Where the value of a varied field comes from.
-enum Source {
-    /// Index of the parameter.
-    Free(usize),
-    Follows(Formula),
-}
-
 /// Steps that a start takes, about.
 const STEPS_OF_START: usize = 5;
 
 /// A fit.
 struct Fitting {
     of: String,
+    /// Of the stages that are computed anew.
+    names: Vec<String>,
     points: Points,
     axes: Vec<Axis>,
     /// By axis.
@@ -119,12 +97,12 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     if stated.meet.is_empty() {
         return nothing(Stated::NAMES.meet);
     }
-    let schemas = match stated.vary.stages.last() {
-        Some(asked) => chain::built(asked)?.outputs(),
-        None => Vec::new(),
-    };
+    let stages = stated.vary.stages.iter();
+    let stages: Vec<Schemas> = stages
+        .map(|stage| Ok((stage.name.clone(), chain::built(stage)?.outputs())))
+        .collect::<Result<_, Diagnostic>>()?;
     let goals = stated.meet.iter().zip(record.each_inside(Stated::NAMES.meet));
-    let goals = Faults::collect(goals.map(|(met, record)| Goal::read(met, record, (&stated.of, &schemas))))?;
+    let goals = Faults::collect(goals.map(|(met, record)| Goal::read(met, record, &stages)))?;
     let (parameters, sources) = parameters(&stated.vary.axes)?;
     let values: usize = goals.iter().map(|goal| goal.targets.len()).sum();
     // Whether intervals hold what meets a value is asked of any number of them.
@@ -136,81 +114,19 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
             .help("meet more values, or vary fewer fields")
             .into());
     }
-    let mut demand = Demand::default();
-    for goal in &goals {
-        goal.ask(&schemas, &mut demand);
-    }
-    let points = Points::new(&stated.vary, demand)?;
+    let demand = |stage: &Schemas| {
+        let mut demand = Demand::default();
+        for goal in &goals {
+            goal.ask(stage, &mut demand);
+        }
+        demand
+    };
+    let points = Points::new(&stated.vary, stages.iter().map(demand).collect())?;
+    let names = stages.into_iter().map(|(name, _)| name).collect();
     let own = own_values(&stated.vary, &parameters);
     let axes = stated.vary.axes;
     let (starts, steps) = (stated.starts, stated.steps);
-    Ok(Box::new(Fitting { of: stated.of, points, axes, sources, parameters, goals, own, starts, steps }))
-}
-
-/// The parameters, and where the value of each axis comes from.
-fn parameters(axes: &[Axis]) -> Result<(Vec<Parameter>, Vec<Source>), Diagnostic> {
-    let mut parameters: Vec<Parameter> = Vec::new();
-    for axis in axes {
-        let clashes = tables::RESERVED.contains(&axis.name.as_str())
-            || axes.iter().any(|other| tables::deviation_name(&other.name) == axis.name);
-        if clashes {
-            let message = format!("`{}` is a column of the table `solutions`; take another name", axis.name);
-            return Err(Diagnostic::new(message).at(axis.place));
-        }
-        let (bounds, is_interval) = match &axis.values {
-            Values::Between(low, high) => ((*low, *high), false),
-            // What was printed rounded is somewhere within.
-            Values::Spread(Spread { form: Form::Within(half, _), about, .. }) => {
-                (((about - half).max(axis.range.0), (about + half).min(axis.range.1)), true)
-            }
-            Values::Follows(_) => continue,
-            Values::Each(_) | Values::Spread(_) => {
-                return Err(Diagnostic::new(format!("`{}` has no bounds to be fitted within", axis.name))
-                    .at(axis.values_place)
-                    .help("write `from` and `to` without a `count`, or `within: ± …` of the value in the study"));
-            }
-        };
-        if axis.multiple.is_some() {
-            let message =
-                format!("`{}` takes whole numbers, which cannot be fitted: nothing lies between them", axis.name);
-            return Err(Diagnostic::new(message).at(axis.place).help("sweep them: `kind: sweep` takes all `values`"));
-        }
-        let (name, path, unit) = (axis.name.clone(), axis.path.clone(), axis.unit.clone());
-        parameters.push(Parameter { name, path, unit, bounds, is_interval });
-    }
-    if parameters.is_empty() {
-        return Err(Diagnostic::new("nothing is free: every field follows from others").at(axes[0].values_place));
-    }
-    let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
-    let source = |axis: &Axis| {
-        let Values::Follows(text) = &axis.values else {
-            return Ok(Source::Free(names.iter().position(|name| *name == axis.name).unwrap_or_default()));
-        };
-        let wrong = |message: String| Diagnostic::new(message).at(axis.values_place);
-        let formula = Formula::parse(text, &names).map_err(wrong)?;
-        if formula.is_claim() {
-            return Err(wrong(format!("`{text}` is true or false; `follows` is a number")));
-        }
-        Ok(Source::Follows(formula))
-    };
-    let sources = axes.iter().map(source).collect::<Result<Vec<_>, _>>()?;
-    Ok((parameters, sources))
-}
-
-/// The values that the study has; none where it has several of a field, or one outside of the bounds.
-fn own_values(varied: &Varied, parameters: &[Parameter]) -> Option<Vec<f64>> {
-    let free = varied.axes.iter().filter(|axis| !matches!(axis.values, Values::Follows(_)));
-    free.zip(parameters)
-        .map(|(axis, parameter)| {
-            let entry = axis.slot.entry(&varied.stages[axis.stage].record)?;
-            let value = match &entry.value {
-                Value::Quantity(value) | Value::Number(value) => *value,
-                Value::Axis(values) if values.len() == 1 => values[0],
-                _ => return None,
-            };
-            (parameter.bounds.0 <= value && value <= parameter.bounds.1).then_some(value)
-        })
-        .collect()
+    Ok(Box::new(Fitting { of: stated.of, names, points, axes, sources, parameters, goals, own, starts, steps }))
 }
 
 impl Fitting {
@@ -260,7 +176,9 @@ impl Fitting {
             values.map_err(Diagnostic::new)?;
             let found = tables.next().unwrap_or_else(|| Err(String::new())).map_err(Diagnostic::new)?;
             let mut own = Inputs::default();
-            own.ports.insert(self.of.clone(), found.iter().collect());
+            for (name, tables) in self.names.iter().zip(&found) {
+                own.ports.insert(name.clone(), tables.iter().collect());
+            }
             let numbers: Vec<Vec<f64>> = self.goals.iter().map(|goal| goal.found(&own)).collect::<Result<_, _>>()?;
             Ok(numbers.concat())
         };

@@ -62,11 +62,11 @@ pub struct Chain {
 pub type Tables = Vec<Option<Vec<Table>>>;
 
 impl Chain {
-    /// `demand` is what is asked of the last stage.
+    /// `demands` are what is asked of each stage beside what the others read.
     ///
     /// # Errors
     /// What a kind refuses of the study as it is.
-    pub fn new(varied: &Varied, demand: Demand) -> Result<Self, Diagnostic> {
+    pub fn new(varied: &Varied, demands: Vec<Demand>) -> Result<Self, Diagnostic> {
         let mut built: Vec<(&'static Kind, Vec<Port>)> = Vec::new();
         let mut draws = Vec::new();
         for stage in &varied.stages {
@@ -75,19 +75,17 @@ impl Chain {
             built.push((kind(stage)?, own.inputs()));
         }
         let mut chain = Self { links: Vec::new(), outer: Vec::new() };
-        let last = built.len() - 1;
-        for (index, (kind, ports)) in built.iter().enumerate() {
+        for (index, ((kind, ports), demand)) in built.iter().zip(demands).enumerate() {
             let mut link = Link {
                 kind,
                 record: varied.stages[index].filled.clone(),
                 ports: Vec::new(),
-                demand: Demand::default(),
+                demand,
                 uses_seed: draws[index],
             };
             for port in ports {
-                // Columns on demand are asked of the last stage alone.
-                let nothing = Demand::default();
-                if !port.is_wanted(if index == last { &demand } else { &nothing }) {
+                // Columns on demand are never what another stage of the chain reads.
+                if !port.is_wanted(&link.demand) {
                     continue;
                 }
                 let source = chain.source(varied, &built, index, port);
@@ -95,7 +93,6 @@ impl Chain {
             }
             chain.links.push(link);
         }
-        chain.links[last].demand = demand;
         for reader in 0..chain.links.len() {
             for (port, source) in chain.links[reader].ports.clone() {
                 if let Source::Link(read) = source {

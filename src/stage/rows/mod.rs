@@ -225,7 +225,9 @@ impl Prepared {
             output.ask(&schemas, &mut demand);
             demand
         });
-        let chain = Chain::new(&varied, demand)?;
+        let mut demands = vec![Demand::default(); varied.stages.len().saturating_sub(1)];
+        demands.push(demand);
+        let chain = Chain::new(&varied, demands)?;
         let quick = Quick::new(&chain, &columns, &outputs, design.as_deref());
         let settings = quick.as_ref().and(varied.stages.last()).map(|asked| quick::sampling(&asked.record));
         let is_key = columns.iter().map(is_key).collect();

@@ -19,7 +19,9 @@ use studygraph::table::data::Table;
 const KEPT: usize = 64;
 
 /// A stage's tables, or why there are none.
-pub type Found = Result<Arc<Vec<Table>>, String>;
+type Found = Result<Arc<Vec<Table>>, String>;
+/// The tables of all stages of a chain, or why there are none.
+pub type AllFound = Result<Vec<Arc<Vec<Table>>>, String>;
 
 /// A chain of stages with varied fields.
 pub struct Points {
@@ -37,12 +39,12 @@ pub struct Memory {
 }
 
 impl Points {
-    /// `demand` is what is asked of the last stage.
+    /// `demands` are what is asked of each stage.
     ///
     /// # Errors
     /// What a kind refuses of the study as it is.
-    pub fn new(varied: &Varied, demand: Demand) -> Result<Self, Diagnostic> {
-        let chain = Chain::new(varied, demand)?;
+    pub fn new(varied: &Varied, demands: Vec<Demand>) -> Result<Self, Diagnostic> {
+        let chain = Chain::new(varied, demands)?;
         let columns: Vec<Column> =
             varied.axes.iter().map(|axis| Column { axis: axis.clone(), class: Class::Upstream }).collect();
         let mut depends: Vec<Vec<usize>> = Vec::new();
@@ -74,7 +76,7 @@ impl Points {
         self.chain.links.iter().any(|link| link.uses_seed)
     }
 
-    /// The tables of the last stage at some points, in SI and in the order of the columns.
+    /// The tables of all stages at some points, in SI and in the order of the columns.
     ///
     /// # Errors
     /// When the user stopped, or the stages cannot go on at all.
@@ -83,7 +85,7 @@ impl Points {
         points: &[Vec<f64>],
         memory: &mut Memory,
         (context, inputs): (&Context, &Inputs),
-    ) -> Result<Vec<Found>, Failure> {
+    ) -> Result<Vec<AllFound>, Failure> {
         context.check_stop()?;
         memory.known.resize_with(self.chain.links.len(), BTreeMap::new);
         let key = |link: usize, point: &[f64]| -> Vec<u64> {
@@ -118,8 +120,10 @@ impl Points {
                 .collect::<Result<_, Failure>>()?;
             memory.known[link].extend(found);
         }
-        let last = self.chain.links.len() - 1;
-        let found = points.iter().map(|point| memory.known[last][&key(last, point)].clone()).collect();
+        let of_point = |point: &Vec<f64>| -> AllFound {
+            memory.known.iter().enumerate().map(|(link, known)| known[&key(link, point)].clone()).collect()
+        };
+        let found = points.iter().map(of_point).collect();
         for (link, known) in memory.known.iter_mut().enumerate() {
             if known.len() > KEPT {
                 let used: Vec<Vec<u64>> = points.iter().map(|point| key(link, point)).collect();

@@ -45,6 +45,9 @@ pub struct Met {
     pub tolerance: Placed<String>,
 }
 
+/// A stage and the tables that it has.
+pub type Schemas = (String, Vec<Schema>);
+
 enum Subject {
     Cell(Operand),
     Formula(Formula, Operands),
@@ -61,11 +64,12 @@ pub struct Goal {
 }
 
 impl Goal {
-    /// Of the stage that `of` names, which has these tables.
+    /// Of these stages with their tables, which are computed anew; the last is the one that is asked.
     ///
     /// # Errors
     /// What is wrong with it, at its place.
-    pub fn read(met: &Met, record: &Record, (of, schemas): (&str, &[Schema])) -> Result<Self, Diagnostic> {
+    pub fn read(met: &Met, record: &Record, stages: &[Schemas]) -> Result<Self, Diagnostic> {
+        let of = stages.last().map_or("stage", |(name, _)| name.as_str());
         let (subject, place) = match (&met.cell, &met.formula) {
             (Some(cell), None) => {
                 if met.with.is_some() {
@@ -115,15 +119,16 @@ impl Goal {
         let goal = Self { label: trimmed(&met.label), location: trimmed(&met.location), subject, targets, place };
         for operand in goal.operands() {
             let Some(cell) = operand.cell() else { continue };
-            if cell.stage != of {
-                let message = format!("`{}` is no cell of `{of}`, the stage that is computed anew", operand.text);
+            let Some((_, schemas)) = stages.iter().find(|(name, _)| *name == cell.stage) else {
+                let names = stages.iter().map(|(name, _)| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+                let message = format!("`{}` is no cell of what is computed anew: {names}", operand.text);
                 return Err(Diagnostic::new(message)
                     .at(operand.place)
-                    .help("name its cells, or another stage with `of`"));
-            }
+                    .help("name cells of these, or another stage with `of`"));
+            };
             Self::output(operand, schemas)?;
         }
-        if let Some(dimension) = goal.dimension(schemas)? {
+        if let Some(dimension) = goal.dimension(stages)? {
             let number = Number { si: f64::NAN, dimension };
             let fits = goal.targets[0].stated.check_dimension(number);
             fits.map_err(|message| Diagnostic::new(message).at(goal.targets[0].place))?;
@@ -166,17 +171,19 @@ impl Goal {
         Output::read(&Placed { value: rest.to_owned(), place: operand.place }, schemas)
     }
 
-    /// Adds what it needs of the stage's tables.
-    pub fn ask(&self, schemas: &[Schema], demand: &mut Demand) {
-        for operand in self.operands().filter(|operand| operand.cell().is_some()) {
+    /// Adds what it needs of a stage's tables.
+    pub fn ask(&self, (stage, schemas): &Schemas, demand: &mut Demand) {
+        let of_stage = |operand: &&Operand| operand.cell().is_some_and(|cell| cell.stage == *stage);
+        for operand in self.operands().filter(of_stage) {
             if let Ok(output) = Self::output(operand, schemas) {
                 output.ask(schemas, demand);
             }
         }
     }
 
-    fn dimension(&self, schemas: &[Schema]) -> Result<Option<Dimension>, Diagnostic> {
+    fn dimension(&self, stages: &[Schemas]) -> Result<Option<Dimension>, Diagnostic> {
         let of_cell = |cell: &CellName| {
+            let (_, schemas) = stages.iter().find(|(name, _)| *name == cell.stage)?;
             let schema = schemas.iter().find(|schema| schema.name == cell.table)?;
             parse_unit(&schema.column(&cell.column)?.unit).ok().map(|unit| unit.dimension)
         };

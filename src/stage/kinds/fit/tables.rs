@@ -2,8 +2,8 @@
 //!
 //! Must not know: how anything in them is found.
 
-use super::Parameter;
 use super::goal::Goal;
+use super::parameters::Parameter;
 use super::search::Solution;
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;

@@ -2,7 +2,7 @@
 //!
 //! Must not know: how it was found.
 
-use super::Parameter;
+use super::parameters::Parameter;
 use super::search::Found;
 use super::tables::ParameterRow;
 use declare::number::{significant, with_unit};
