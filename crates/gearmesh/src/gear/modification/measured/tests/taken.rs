@@ -3,6 +3,7 @@
 use super::*;
 use crate::gear::compliance::finite_element::FiniteElement;
 use crate::gear::compliance::{Assumptions, Method};
+use crate::gear::fixtures::standard;
 use crate::gear::modification::template::Template;
 use declare::declared::{Registrable, Words, entry};
 use declare::record::{PlacedValue, Value};
@@ -10,7 +11,8 @@ use declare::record::{PlacedValue, Value};
 /// Tier: second method; a trace of crowning is that crowning to finite elements and their resolved contact.
 #[test]
 fn finite_elements_take_a_trace() {
-    let pair = pair();
+    let [pinion, gear] = [19, 48].map(|teeth| standard(teeth, 3e-3, 1.6));
+    let pair = GearPair::new(pinion, gear, None).unwrap();
     let method = FiniteElement { elements_across: 12, ..FiniteElement::default() };
     let assumptions = Assumptions { contact: ContactLaw::Resolved, ..Assumptions::default() };
     let compliance = method.tabulate(&pair, assumptions).unwrap().compliance;
