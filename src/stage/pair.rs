@@ -42,6 +42,18 @@ pub fn gears<'a>() -> Columns<GearRow<'a>> {
         .float(names::gears::RACK_TIP_RADIUS, "", "Tip radius of the cutting rack ρ_fP*, in modules.", |row| {
             row.1.specification.rack.tip_radius
         })
+        .float(names::gears::PROTUBERANCE, "", "Protuberance of the cutting rack pr*, in modules.", |row| {
+            row.1.specification.rack.protuberance
+        })
+        .float(names::gears::PROTUBERANCE_ANGLE, "deg", "Angle of the protuberance's straight side α_prP.", |row| {
+            row.1.specification.rack.protuberance_angle
+        })
+        .float(names::gears::MACHINING_ALLOWANCE, "", "Machining allowance on each flank q*, in modules.", |row| {
+            row.1.specification.rack.machining_allowance
+        })
+        .float(names::gears::NOTCH_RADIUS, "", "Radius of a grinding notch in the root ρ_g*, in modules.", |row| {
+            row.1.specification.rack.notch_radius
+        })
         .float(names::gears::FACE_WIDTH, "mm", "Face width b.", |row| row.1.specification.face_width)
         .float(names::gears::BORE_RADIUS, "mm", "Radius of the bore, where the body is clamped.", |row| {
             row.1.specification.bore_radius
@@ -128,6 +140,10 @@ pub fn read(gears: &Table, pair: &Table) -> Result<GearPair, Failure> {
                 addendum: value(names::gears::RACK_ADDENDUM),
                 dedendum: value(names::gears::RACK_DEDENDUM),
                 tip_radius: value(names::gears::RACK_TIP_RADIUS),
+                protuberance: value(names::gears::PROTUBERANCE),
+                protuberance_angle: value(names::gears::PROTUBERANCE_ANGLE),
+                machining_allowance: value(names::gears::MACHINING_ALLOWANCE),
+                notch_radius: value(names::gears::NOTCH_RADIUS),
             },
             tip_radius: Some(value(names::gears::TIP_RADIUS)),
             face_width: value(names::gears::FACE_WIDTH),

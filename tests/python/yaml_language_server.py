@@ -91,7 +91,8 @@ beyond = {
     "device_as_study", "nul_in_a_name", "nul_in_title", "bore_of_nothing", "octal_teeth", "hexadecimal_teeth",
     "empty_file", "no_designs", "condition_of_a_figure", "constraint_sign", "constraint_unit", "constraint_unknown_column",
     "constraints_contradict", "objective_unknown", "objectives_for_one", "sizing_objectives", "units_of_a_claim",
-    "rating_design_alone",
+    "rating_design_alone", "protuberance_leaves_no_flank", "protuberance_as_steep_as_the_flank", "allowance_leaves_no_tool",
+    "notch_without_radius",
 }
 seen = []
 for path in sorted(pathlib.Path("tests/bad").glob("*.yaml")):

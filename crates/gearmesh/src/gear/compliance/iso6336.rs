@@ -240,7 +240,7 @@ mod tests {
     }
 
     fn pair(teeth: [u32; 2], shift: [f64; 2], addendum: f64) -> GearPair {
-        let rack = Rack { addendum, dedendum: addendum + 0.25, tip_radius: 0.2 };
+        let rack = Rack { addendum, dedendum: addendum + 0.25, tip_radius: 0.2, ..Rack::ISO_53_A };
         let gear = |index: usize| Specification {
             teeth: teeth[index],
             module: 3e-3,

@@ -28,7 +28,7 @@ fn shifted(teeth: u32, profile_shift: f64, bore_ratio: f64) -> Specification {
         pressure_angle: 20f64.to_radians(),
         profile_shift,
         thickness_allowance: 0.0,
-        rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 },
+        rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38, ..Rack::ISO_53_A },
         tip_radius: None,
         face_width: 1.0,
         bore_radius: (0.5 * f64::from(teeth) - 1.25 + profile_shift) / bore_ratio * (1.0 + 1e-12),

@@ -2,7 +2,11 @@
 //!
 //! Must not know: where a study states the parameter. Lengths and angles arrive in SI and are shown in mm and degrees.
 
+pub mod parameter;
+
 use std::fmt;
+
+pub use parameter::Parameter;
 
 use super::Side;
 
@@ -59,6 +63,46 @@ pub enum Problem {
         /// ρ_fP*.
         radius: Plain,
         /// ρ_fP* at which the tip land of the rack vanishes.
+        largest: Plain,
+    },
+    /// The tool leaves so much stock that its teeth end in a point before they reach the root.
+    #[error(
+        "the machining allowance is {allowance} modules, but must be below {largest}, where the tool's teeth end in a point before they are {dedendum} modules deep"
+    )]
+    AllowanceTooLarge {
+        /// q*.
+        allowance: Plain,
+        /// h_fP*.
+        dedendum: Plain,
+        /// q* at which the tool's tip land vanishes.
+        largest: Plain,
+    },
+    /// The protuberance cuts away the whole flank.
+    #[error(
+        "no involute is left: the protuberance of {protuberance} modules at {angle}, less a machining allowance of {allowance}, cuts the flank away up to the tip circle at {tip}"
+    )]
+    ProtuberanceTooLarge {
+        /// pr*.
+        protuberance: Plain,
+        /// q*.
+        allowance: Plain,
+        /// α_prP \[rad\].
+        angle: Degrees,
+        /// r_a \[m\].
+        tip: Millimetres,
+    },
+    /// The notch that grinding leaves does not go over into the root.
+    #[error(
+        "grinding leaves a notch {depth} deep in the root, since the allowance is larger than the protuberance; the radius of the notch is {radius} modules, but must be above {smallest} and at most {largest} to meet the root"
+    )]
+    NotchRadius {
+        /// ρ_g*.
+        radius: Plain,
+        /// t_g \[m\].
+        depth: Millimetres,
+        /// t_g*, with which the arc turns by a right angle.
+        smallest: Plain,
+        /// ρ_g* with which the arc still reaches the root curve, by bisection.
         largest: Plain,
     },
     /// The form radius is not below the tip radius: undercut has cut the involute off, or the tip circle is too small.
@@ -264,60 +308,6 @@ pub enum Reached {
     InsideBaseCircle,
 }
 
-/// What a user states about gears.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Parameter {
-    /// z.
-    Teeth,
-    /// m.
-    Module,
-    /// α.
-    PressureAngle,
-    /// x, in units of the module.
-    ProfileShift,
-    /// h_aP*.
-    RackAddendum,
-    /// h_fP*.
-    RackDedendum,
-    /// ρ_fP*.
-    RackTipRadius,
-    /// r_a.
-    TipRadius,
-    /// b.
-    FaceWidth,
-    /// Radius of the bore.
-    BoreRadius,
-    /// E.
-    YoungsModulus,
-    /// ν.
-    PoissonRatio,
-    /// a_w.
-    CentreDistance,
-    /// A_s, W_k or M_dK.
-    ToothThickness,
-}
-
-impl Parameter {
-    fn words(self) -> &'static str {
-        match self {
-            Self::Teeth => "the number of teeth",
-            Self::Module => "the module",
-            Self::PressureAngle => "the pressure angle",
-            Self::ProfileShift => "the profile shift",
-            Self::RackAddendum => "the rack's addendum",
-            Self::RackDedendum => "the rack's dedendum",
-            Self::RackTipRadius => "the rack's tip radius",
-            Self::TipRadius => "the tip radius",
-            Self::FaceWidth => "the face width",
-            Self::BoreRadius => "the bore radius",
-            Self::YoungsModulus => "Young's modulus",
-            Self::PoissonRatio => "Poisson's ratio",
-            Self::CentreDistance => "the centre distance",
-            Self::ToothThickness => "the tooth thickness",
-        }
-    }
-}
-
 /// What an error is about, of all that its user stated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Subject {
@@ -339,6 +329,9 @@ impl GeometryError {
             Problem::OutOfRange { parameter, .. } | Problem::Differs { parameter, .. } => *parameter,
             Problem::NoTipLand { .. } => Parameter::PressureAngle,
             Problem::TipRoundTooLarge { .. } | Problem::FilletDoesNotFit { .. } => Parameter::RackTipRadius,
+            Problem::AllowanceTooLarge { .. } => Parameter::MachiningAllowance,
+            Problem::ProtuberanceTooLarge { .. } => Parameter::Protuberance,
+            Problem::NotchRadius { .. } => Parameter::NotchRadius,
             Problem::NoFlank { .. } | Problem::Interference { .. } => Parameter::Teeth,
             Problem::RootArcTooLarge { .. } | Problem::NothingBelowBase { .. } | Problem::CutOff { .. } => {
                 return Subject::Root;

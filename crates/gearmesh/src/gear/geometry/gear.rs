@@ -8,13 +8,11 @@ use std::ops::RangeInclusive;
 
 use super::error::{Degrees, GeometryError, Millimetres, Parameter, Plain, Problem};
 use super::flank_end::FlankEnd;
+use super::generated::Generated;
 use super::involute::involute;
 use super::outline::tip::Tip;
-use super::trochoid::{self, Trochoid};
-use super::{Gear, Specification};
-
-/// Degrees to radians, for the range of the pressure angle.
-const DEGREE: f64 = std::f64::consts::PI / 180.0;
+use super::trochoid;
+use super::{DEGREE, Gear, Rack, Specification};
 
 /// Least bore radius over root radius: a body held at a point would turn about it without limit.
 const LEAST_BORE: f64 = 1e-3;
@@ -59,7 +57,7 @@ impl Gear {
                 )
             });
         }
-        let (_, joint) = Trochoid::generate(specification, base_radius);
+        let Generated { joint, .. } = Generated::new(specification, base_radius, half_base_angle)?;
         let mut gear = Self {
             specification: *specification,
             reference_radius,
@@ -87,10 +85,29 @@ impl Gear {
         Ok(Self { tip, flank_end, ..self })
     }
 
+    /// Whether a rack without protuberance would leave a flank below the tip circle.
+    fn is_cut_by_protuberance(&self) -> bool {
+        let given = self.specification;
+        let rack = Rack { protuberance: 0.0, machining_allowance: 0.0, ..given.rack };
+        given.rack.residual_undercut() > 0.0
+            && Generated::new(&Specification { rack, ..given }, self.base_radius, self.half_base_angle)
+                .is_ok_and(|plain| plain.joint.radius < self.tip_radius)
+    }
+
     fn check(&self) -> Result<(), GeometryError> {
         let Specification { teeth, bore_radius, tip_radius, .. } = self.specification;
         // Named for what must hold, so that a NaN fails too.
         let has_flank = self.tip_radius > self.form_radius;
+        if !has_flank && self.is_cut_by_protuberance() {
+            let rack = &self.specification.rack;
+            return Err(Problem::ProtuberanceTooLarge {
+                protuberance: Plain(rack.protuberance),
+                allowance: Plain(rack.machining_allowance),
+                angle: Degrees(rack.protuberance_angle),
+                tip: Millimetres(self.tip_radius),
+            }
+            .into());
+        }
         if !has_flank {
             return Err(Problem::NoFlank {
                 form: Millimetres(self.form_radius),
@@ -130,7 +147,7 @@ fn check_ranges(specification: &Specification) -> Result<(), GeometryError> {
     let angle: Show = |value| Degrees(value).to_string();
     let plain: Show = |value| Plain(value).to_string();
     let Specification { teeth, module, pressure_angle, profile_shift, rack, face_width, material, .. } = *specification;
-    let rows: [Row; 10] = [
+    let rows: [Row; 14] = [
         (Parameter::Teeth, teeth.into(), 4.0..=10_000.0, plain, ""),
         (Parameter::Module, module, 1e-6..=10.0, length, ""),
         (Parameter::PressureAngle, pressure_angle, DEGREE..=45.0 * DEGREE, angle, ""),
@@ -138,6 +155,10 @@ fn check_ranges(specification: &Specification) -> Result<(), GeometryError> {
         (Parameter::RackAddendum, rack.addendum, 0.1..=5.0, plain, " modules"),
         (Parameter::RackDedendum, rack.dedendum, 0.1..=5.0, plain, " modules"),
         (Parameter::RackTipRadius, rack.tip_radius, 0.0..=5.0, plain, " modules"),
+        (Parameter::Protuberance, rack.protuberance, 0.0..=1.0, plain, " modules"),
+        (Parameter::ProtuberanceAngle, rack.protuberance_angle, DEGREE..=45.0 * DEGREE, angle, ""),
+        (Parameter::MachiningAllowance, rack.machining_allowance, 0.0..=1.0, plain, " modules"),
+        (Parameter::NotchRadius, rack.notch_radius, 0.0..=5.0, plain, " modules"),
         (Parameter::FaceWidth, face_width, 1e-6..=100.0, length, ""),
         (Parameter::YoungsModulus, material.youngs_modulus, 1.0..=1e15, plain, " Pa"),
         (Parameter::PoissonRatio, material.poisson_ratio, 0.0..=0.5, plain, ""),
@@ -153,16 +174,30 @@ fn check_ranges(specification: &Specification) -> Result<(), GeometryError> {
 
 fn check_rack(specification: &Specification) -> Result<(), GeometryError> {
     let Specification { pressure_angle, rack, .. } = *specification;
-    let largest = trochoid::full_round(specification);
-    if largest <= 0.0 {
+    let plain = Rack { protuberance: 0.0, machining_allowance: 0.0, ..rack };
+    if trochoid::full_round(&Specification { rack: plain, ..*specification }) <= 0.0 {
         let largest = Degrees(libm::atan(FRAC_PI_4 / rack.dedendum));
         return Err(
             Problem::NoTipLand { dedendum: Plain(rack.dedendum), angle: Degrees(pressure_angle), largest }.into()
         );
     }
+    let largest = trochoid::full_round(specification);
+    if largest <= 0.0 {
+        let (sine, cosine) = libm::sincos(pressure_angle);
+        let largest = rack.protuberance + FRAC_PI_4 * cosine - rack.dedendum * sine;
+        let [allowance, dedendum, largest] = [rack.machining_allowance, rack.dedendum, largest].map(Plain);
+        return Err(Problem::AllowanceTooLarge { allowance, dedendum, largest }.into());
+    }
     // Full round is allowed, so it must be reachable by a decimal number.
     if rack.tip_radius > largest * (1.0 + 1e-9) {
         return Err(Problem::TipRoundTooLarge { radius: Plain(rack.tip_radius), largest: Plain(largest) }.into());
+    }
+    if rack.protuberance > 0.0 && rack.protuberance_angle >= pressure_angle {
+        return Err(out_of_range(
+            Parameter::ProtuberanceAngle,
+            &Degrees(rack.protuberance_angle),
+            format!("below the pressure angle, {}", Degrees(pressure_angle)),
+        ));
     }
     Ok(())
 }

@@ -194,7 +194,7 @@ mod tests {
             pressure_angle: 20_f64.to_radians(),
             profile_shift,
             thickness_allowance: 0.0,
-            rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.25 },
+            rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.25, ..Rack::ISO_53_A },
             tip_radius: None,
             face_width: 0.02,
             bore_radius: 0.012,

@@ -2,8 +2,9 @@
 //!
 //! σ_F0 = F_t/(b m) Y_F Y_S with the load at the outer point of single pair tooth contact. The critical section is where the
 //! tangents to the fillets stand at 30° to the tooth's centreline; Y_F is its bending stress, Y_S corrects for the notch. For
-//! 1 ≤ q_s < 8 and ε_α < 2; Y_DT and f_ε are then 1, and Y_B is 1 since bores are held by their shafts. The rack has no
-//! protuberance, and profile shift is the generating one. Must not know: load sharing, the tooth's elasticity.
+//! 1 ≤ q_s < 8 and ε_α < 2; Y_DT and f_ε are then 1, and Y_B is 1 since bores are held by their shafts. Profile shift is the
+//! generating one. A grinding notch makes Y_S larger (7.3), wherever it lies above the critical section. Must not know: load
+//! sharing, the tooth's elasticity.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, FRAC_PI_6};
 
@@ -14,6 +15,8 @@ use crate::gear::geometry::{GearPair, Rack, Side, Specification};
 const NOTCH: std::ops::Range<f64> = 1.0..8.0;
 /// ε_α from which two pairs always share the load.
 const DEEP_MESH: f64 = 2.0;
+/// √(t_g/ρ_g) below which a grinding notch has a factor.
+const SHARPEST_NOTCH: f64 = 2.0;
 /// Steps of the iteration for θ; five are enough by the standard.
 const STEPS: usize = 100;
 
@@ -26,8 +29,10 @@ pub struct Tooth {
     pub pressure_angle: f64,
     /// x.
     pub profile_shift: f64,
-    /// h_fP and ρ_fP.
+    /// h_fP, ρ_fP and s_pr.
     pub rack: Rack,
+    /// t_g/ρ_g: depth of the grinding notch over its radius; 0 without one.
+    pub grinding_notch: f64,
     /// d_en/2: where the load acts.
     pub load_radius: f64,
 }
@@ -47,7 +52,7 @@ pub struct Section {
     pub notch: f64,
     /// Y_F.
     pub form_factor: f64,
-    /// Y_S.
+    /// Y_S, or Y_Sg where there is a grinding notch.
     pub stress_correction_factor: f64,
 }
 
@@ -60,6 +65,9 @@ pub enum Outside {
     /// q_s is not what Y_S is given for.
     #[error("the notch parameter q_s is {}, but must be {} to {}", Plain(*.0), Plain(NOTCH.start), Plain(NOTCH.end))]
     Notch(f64),
+    /// √(t_g/ρ_g) is not what Y_Sg is given for.
+    #[error("the grinding notch has √(t_g/ρ_g) = {}, but must have less than {}: a larger radius", Plain(*.0), Plain(SHARPEST_NOTCH))]
+    GrindingNotch(f64),
     /// ε_α is 2 or more.
     #[error("the transverse contact ratio is {}, but must be below {}: no single pair carries all of the load", Plain(*.0), Plain(DEEP_MESH))]
     ContactRatio(f64),
@@ -70,11 +78,11 @@ pub enum Outside {
 /// # Errors
 /// When there is none, or the notch is outside the range of Y_S.
 pub fn section(tooth: &Tooth) -> Result<Section, Outside> {
-    let Tooth { teeth, pressure_angle, profile_shift, rack, load_radius } = *tooth;
+    let Tooth { teeth, pressure_angle, profile_shift, rack, grinding_notch, load_radius } = *tooth;
     let (sine, cosine) = libm::sincos(pressure_angle);
     let tangent = sine / cosine;
     let (dedendum, round) = (rack.dedendum, rack.tip_radius);
-    let e = FRAC_PI_4 - dedendum * tangent - (1.0 - sine) * round / cosine;
+    let e = FRAC_PI_4 - dedendum * tangent + rack.residual_undercut() / cosine - (1.0 - sine) * round / cosine;
     let g = round - dedendum + profile_shift;
     let h = 2.0 / teeth * (FRAC_PI_2 - e) - FRAC_PI_3;
     let mut theta = FRAC_PI_6;
@@ -103,6 +111,10 @@ pub fn section(tooth: &Tooth) -> Result<Section, Outside> {
     if !NOTCH.contains(&notch) {
         return Err(Outside::Notch(notch));
     }
+    let sharpness = grinding_notch.sqrt();
+    if sharpness >= SHARPEST_NOTCH {
+        return Err(Outside::GrindingNotch(sharpness));
+    }
     let slenderness = chord / lever;
     Ok(Section {
         chord,
@@ -111,7 +123,9 @@ pub fn section(tooth: &Tooth) -> Result<Section, Outside> {
         load_angle,
         notch,
         form_factor: 6.0 * lever * libm::cos(load_angle) / (chord * chord * cosine),
-        stress_correction_factor: (1.2 + 0.13 * slenderness) * libm::pow(notch, 1.0 / (1.21 + 2.3 / slenderness)),
+        stress_correction_factor: (1.2 + 0.13 * slenderness)
+            * libm::pow(notch, 1.0 / (1.21 + 2.3 / slenderness))
+            * (1.3 / (1.3 - 0.6 * sharpness)),
     })
 }
 
@@ -129,7 +143,9 @@ pub fn critical_section(pair: &GearPair, side: Side) -> Result<Section, Outside>
     // Inside the end of the flank, along the line of action, by what is shared with another pair.
     let length = gear.flank_end.roll * gear.base_radius - pair.base_pitch * (pair.contact_ratio - 1.0);
     let load_radius = libm::hypot(length, gear.base_radius) / module;
-    section(&Tooth { teeth: f64::from(teeth), pressure_angle, profile_shift, rack, load_radius })
+    let notch_depth = gear.generated().map_or(0.0, |generated| generated.notch_depth);
+    let grinding_notch = if notch_depth > 0.0 { notch_depth / (module * rack.notch_radius) } else { 0.0 };
+    section(&Tooth { teeth: f64::from(teeth), pressure_angle, profile_shift, rack, grinding_notch, load_radius })
 }
 
 /// σ_F0 \[Pa\] of a gear of a pair under a torque on the pinion \[N m\], over the common face width.
