@@ -23,6 +23,7 @@ fn specification(teeth: u32, profile_shift: f64, tip_radius: f64) -> Specificati
         pressure_angle: 20_f64.to_radians(),
         profile_shift,
         thickness_allowance: 0.0,
+        cutter: None,
         rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius, ..Rack::ISO_53_A },
         tip_radius: None,
         face_width: 20e-3,

@@ -8,6 +8,7 @@ use crate::stage::{Inputs, Port};
 use declare::error::Failure;
 use declare::units::parse_unit;
 use gearmesh::gear::geometry::outline::tip::Tip;
+use gearmesh::gear::geometry::pinion_cutter::PinionCutter;
 use gearmesh::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use gearmesh::gear::material::Material;
 use studygraph::table::columns::Columns;
@@ -53,6 +54,18 @@ pub fn gears<'a>() -> Columns<GearRow<'a>> {
         })
         .float(names::gears::NOTCH_RADIUS, "", "Radius of a grinding notch in the root ρ_g*, in modules.", |row| {
             row.1.specification.rack.notch_radius
+        })
+        .integer(names::gears::CUTTER_TEETH, "Teeth of the pinion-type cutter z_0; 0 where a rack cuts.", |row| {
+            row.1.specification.cutter.map_or(0, |cutter| cutter.teeth)
+        })
+        .float(names::gears::CUTTER_PROFILE_SHIFT, "", "Profile shift coefficient of the cutter x_0.", |row| {
+            row.1.specification.cutter.map_or(0.0, |cutter| cutter.profile_shift)
+        })
+        .float(names::gears::CUTTER_ADDENDUM, "", "Addendum of the cutter h_aP0*, in modules.", |row| {
+            row.1.specification.cutter.map_or(0.0, |cutter| cutter.addendum)
+        })
+        .float(names::gears::CUTTER_TIP_RADIUS, "", "Radius of the cutter's tip rounding ρ_aP0*, in modules.", |row| {
+            row.1.specification.cutter.map_or(0.0, |cutter| cutter.tip_radius)
         })
         .float(names::gears::FACE_WIDTH, "mm", "Face width b.", |row| row.1.specification.face_width)
         .float(names::gears::BORE_RADIUS, "mm", "Radius of the bore, where the body is clamped.", |row| {
@@ -128,8 +141,11 @@ pub fn read(gears: &Table, pair: &Table) -> Result<GearPair, Failure> {
     let specification = |side: Side| -> Result<Specification, Failure> {
         let row = row(gears, side)?;
         let value = |column: &str| si(gears, column, row);
-        let teeth = u32::try_from(gears.integers(names::gears::TEETH)[row])
-            .map_err(|_| Failure::new("the number of teeth is out of range"))?;
+        let whole = |column: &str| {
+            let found = u32::try_from(gears.integers(column)[row]);
+            found.map_err(|_| Failure::new(format!("`{column}` is out of range")))
+        };
+        let (teeth, cutter_teeth) = (whole(names::gears::TEETH)?, whole(names::gears::CUTTER_TEETH)?);
         Ok(Specification {
             teeth,
             module: value(names::gears::MODULE),
@@ -145,6 +161,12 @@ pub fn read(gears: &Table, pair: &Table) -> Result<GearPair, Failure> {
                 machining_allowance: value(names::gears::MACHINING_ALLOWANCE),
                 notch_radius: value(names::gears::NOTCH_RADIUS),
             },
+            cutter: (cutter_teeth > 0).then(|| PinionCutter {
+                teeth: cutter_teeth,
+                profile_shift: value(names::gears::CUTTER_PROFILE_SHIFT),
+                addendum: value(names::gears::CUTTER_ADDENDUM),
+                tip_radius: value(names::gears::CUTTER_TIP_RADIUS),
+            }),
             tip_radius: Some(value(names::gears::TIP_RADIUS)),
             face_width: value(names::gears::FACE_WIDTH),
             bore_radius: value(names::gears::BORE_RADIUS),

@@ -32,6 +32,7 @@ fn specification(teeth: u32, profile_shift: f64, module: f64, youngs_modulus: f6
         pressure_angle: 20_f64.to_radians(),
         profile_shift,
         thickness_allowance: 0.0,
+        cutter: None,
         rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38, ..Rack::ISO_53_A },
         tip_radius: None,
         face_width: module,

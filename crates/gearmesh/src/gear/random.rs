@@ -68,6 +68,7 @@ impl Random {
                 pressure_angle: angle,
                 profile_shift,
                 thickness_allowance: 0.0,
+                cutter: None,
                 rack,
                 tip_radius: None,
                 face_width: width,

@@ -27,6 +27,7 @@ fn specifications(module: f64, bore_ratio: f64) -> [Specification; 2] {
         pressure_angle: angle,
         profile_shift: 0.0,
         thickness_allowance: 0.0,
+        cutter: None,
         rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.25 / (1.0 - angle.sin()), ..Rack::ISO_53_A },
         tip_radius: None,
         face_width: width * module,

@@ -28,6 +28,7 @@ fn shifted(teeth: u32, profile_shift: f64, bore_ratio: f64) -> Specification {
         pressure_angle: 20f64.to_radians(),
         profile_shift,
         thickness_allowance: 0.0,
+        cutter: None,
         rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38, ..Rack::ISO_53_A },
         tip_radius: None,
         face_width: 1.0,

@@ -11,6 +11,7 @@ use super::flank_end::FlankEnd;
 use super::generated::Generated;
 use super::involute::involute;
 use super::outline::tip::Tip;
+use super::pinion_cutter::Shaping;
 use super::trochoid;
 use super::{DEGREE, Gear, Rack, Specification};
 
@@ -23,14 +24,30 @@ impl Gear {
     /// pointed teeth, a bore that reaches the root.
     pub fn new(specification: &Specification) -> Result<Self, GeometryError> {
         check_ranges(specification)?;
-        check_rack(specification)?;
+        let shaping = specification.cutter.as_ref().map(|cutter| cutter.shaping(specification)).transpose()?;
+        if shaping.is_none() {
+            check_rack(specification)?;
+        }
         let Specification { teeth, module, pressure_angle, profile_shift, rack, .. } = *specification;
         let generating_shift = specification.generating_profile_shift();
         let reference_radius = 0.5 * module * f64::from(teeth);
         let base_radius = reference_radius * libm::cos(pressure_angle);
-        let root_radius = reference_radius - module * (rack.dedendum - generating_shift);
+        let root_radius = shaping.as_ref().map_or_else(
+            || reference_radius - module * (rack.dedendum - generating_shift),
+            |shaping| shaping.centre_distance - shaping.tip_radius,
+        );
         let tip_radius =
             specification.tip_radius.unwrap_or(reference_radius + module * (rack.addendum + profile_shift));
+        if root_radius <= 0.0
+            && let Some(cutter) = specification.cutter
+        {
+            let largest = cutter.addendum + root_radius / module;
+            return Err(out_of_range(
+                Parameter::CutterAddendum,
+                &Plain(cutter.addendum),
+                format!("below {} modules, where the root circle vanishes", Plain(largest)),
+            ));
+        }
         if root_radius <= 0.0 {
             let largest = 0.5 * f64::from(teeth) + generating_shift;
             return Err(out_of_range(
@@ -72,6 +89,9 @@ impl Gear {
             flank_end: FlankEnd::corner(0.0),
         };
         gear.check()?;
+        if let Some(shaping) = &shaping {
+            gear.check_generated(shaping)?;
+        }
         gear.flank_end = FlankEnd::corner(gear.tip_roll());
         Ok(gear)
     }
@@ -85,11 +105,23 @@ impl Gear {
         Ok(Self { tip, flank_end, ..self })
     }
 
+    /// Refuses a cutter whose flank begins, at its base circle, before the gear's flank ends.
+    fn check_generated(&self, shaping: &Shaping) -> Result<(), GeometryError> {
+        let [_, highest] = shaping.rolls(self.base_radius);
+        if highest < self.tip_roll() {
+            let [reached, tip] = [self.radius_at(highest), self.tip_radius].map(Millimetres);
+            let teeth = self.specification.cutter.map_or(0, |cutter| cutter.teeth);
+            return Err(Problem::CutterTooSmall { teeth, reached, tip }.into());
+        }
+        Ok(())
+    }
+
     /// Whether a rack without protuberance would leave a flank below the tip circle.
     fn is_cut_by_protuberance(&self) -> bool {
         let given = self.specification;
         let rack = Rack { protuberance: 0.0, machining_allowance: 0.0, ..given.rack };
-        given.rack.residual_undercut() > 0.0
+        given.cutter.is_none()
+            && given.rack.residual_undercut() > 0.0
             && Generated::new(&Specification { rack, ..given }, self.base_radius, self.half_base_angle)
                 .is_ok_and(|plain| plain.joint.radius < self.tip_radius)
     }
@@ -163,7 +195,15 @@ fn check_ranges(specification: &Specification) -> Result<(), GeometryError> {
         (Parameter::YoungsModulus, material.youngs_modulus, 1.0..=1e15, plain, " Pa"),
         (Parameter::PoissonRatio, material.poisson_ratio, 0.0..=0.5, plain, ""),
     ];
-    for (parameter, value, range, show, unit) in rows {
+    let of_cutter = specification.cutter.iter().flat_map(|cutter| -> [Row; 4] {
+        [
+            (Parameter::CutterTeeth, cutter.teeth.into(), 4.0..=100_000.0, plain, ""),
+            (Parameter::CutterProfileShift, cutter.profile_shift, -5.0..=5.0, plain, " modules"),
+            (Parameter::CutterAddendum, cutter.addendum, 0.1..=5.0, plain, " modules"),
+            (Parameter::CutterTipRadius, cutter.tip_radius, 0.0..=5.0, plain, " modules"),
+        ]
+    });
+    for (parameter, value, range, show, unit) in rows.into_iter().chain(of_cutter) {
         if !range.contains(&value) {
             let range = format!("{} to {}{unit}", show(*range.start()), show(*range.end()));
             return Err(out_of_range(parameter, &(show(value) + unit), range));

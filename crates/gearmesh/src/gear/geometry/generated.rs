@@ -1,6 +1,7 @@
 //! What the tool leaves of a tooth below the flank: the root curve of its tip round, and what lies between that and the
 //! involute of the finished tooth.
 //!
+//! - Of a pinion-type cutter it is the root curve as well, up to the involute or across it.
 //! - Without protuberance and stock, nothing: the curve goes over into the involute or, where the rack undercuts, crosses it.
 //! - A protuberance that reaches s_pr beyond the finished flank cuts into it. The curve crosses the involute itself or, before
 //!   that, the involute of the protuberance's straight side, which has the base circle r cos α_prP.
@@ -13,6 +14,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::error::{GeometryError, Millimetres, Plain, Problem};
+use super::pinion_cutter::PinionCutter;
 use super::root::Piece;
 use super::trochoid::Trochoid;
 use super::{Gear, Specification};
@@ -75,6 +77,9 @@ impl Generated {
         base_radius: f64,
         half_base_angle: f64,
     ) -> Result<Self, GeometryError> {
+        if let Some(cutter) = &specification.cutter {
+            return Self::shaped(specification, cutter, base_radius, half_base_angle);
+        }
         let making = Making { specification, base_radius, half_base_angle, curve: Trochoid::of(specification) };
         let beyond = specification.rack.residual_undercut();
         if beyond > NOTHING {
@@ -84,6 +89,41 @@ impl Generated {
             return making.stock(beyond);
         }
         Ok(making.plain())
+    }
+}
+
+impl Generated {
+    /// What a cutter leaves.
+    fn shaped(
+        specification: &Specification,
+        cutter: &PinionCutter,
+        base_radius: f64,
+        half_base_angle: f64,
+    ) -> Result<Self, GeometryError> {
+        let shaping = cutter.shaping(specification)?;
+        let curve = Trochoid::shaped(&shaping, specification.teeth, cutter);
+        let roll = shaping.rolls(base_radius)[0];
+        let of = |trochoid, roll: f64, undercut| {
+            let joint = Joint { radius: base_radius * (1.0 + roll * roll).sqrt(), roll, undercut };
+            Self { trochoid, beyond: None, joint, notch_depth: 0.0 }
+        };
+        if roll >= 0.0 {
+            return Ok(of(curve, roll, false));
+        }
+        let at = |q: f64| {
+            let [x, y] = curve.point_at(q);
+            (libm::hypot(x, y), libm::atan2(x, y))
+        };
+        let upper = curve.joint_parameter();
+        let lowest = crossing::bracketed(0.0, upper, |q| at(q).0 - base_radius).unwrap_or(upper);
+        let excess = |q: f64| {
+            let (radius, angle) = at(q);
+            let roll = roll_at(base_radius, radius);
+            angle - half_base_angle + (roll - libm::atan(roll))
+        };
+        // No sign change only where both differ by rounding, at the very threshold of undercut.
+        let q = crossing::bracketed(lowest, upper, excess).unwrap_or(lowest);
+        Ok(of(curve.up_to_parameter(q), roll_at(base_radius, at(q).0), true))
     }
 }
 
@@ -219,7 +259,7 @@ impl Making<'_> {
         let start = libm::atan2(x - p, y - o) - centre_angle;
         let extent = FRAC_PI_2 - (roll - self.half_base_angle) - centre_angle;
         Ok(Generated {
-            trochoid: self.curve.up_to(FRAC_PI_2 - libm::atan(libm::sinh(q))),
+            trochoid: self.curve.up_to_parameter(q),
             beyond: Some(Piece::Arc { centre_radius, centre_angle, radius, start, extent }),
             joint: self.joint(roll, false),
             notch_depth,

@@ -10,6 +10,7 @@ pub mod inspection;
 pub mod involute;
 pub mod outline;
 pub mod pair;
+pub mod pinion_cutter;
 pub mod root;
 pub mod sliding;
 pub mod thickness;
@@ -27,6 +28,7 @@ use declare::Declared;
 use declare::units::ANGLE;
 use flank_end::FlankEnd;
 use outline::tip::Tip;
+use pinion_cutter::PinionCutter;
 
 /// The rack that cuts a gear, in units of the module, where it stands against the finished tooth (ISO 53, ISO 6336-3).
 ///
@@ -94,8 +96,10 @@ pub struct Specification {
     /// A_s \[m\]: by how much its teeth are thicker on the reference circle than x says; below 0 for backlash. Tip circle and
     /// centre distance stay those of x.
     pub thickness_allowance: f64,
-    /// Basic rack that generates its teeth.
+    /// Basic rack that generates its teeth; of one that is shaped it says the addendum.
     pub rack: Rack,
+    /// Pinion-type cutter that shapes its teeth, where no rack does.
+    pub cutter: Option<PinionCutter>,
     /// r_a \[m\] when it is not m(z/2 + h_aP* + x).
     pub tip_radius: Option<f64>,
     /// b \[m\].
@@ -104,6 +108,24 @@ pub struct Specification {
     pub bore_radius: f64,
     /// E and ν of tooth and body.
     pub material: Material,
+}
+
+impl Specification {
+    /// ρ of the tip of its tool \[modules\].
+    #[must_use]
+    pub fn tool_tip_radius(&self) -> f64 {
+        self.cutter.map_or(self.rack.tip_radius, |cutter| cutter.tip_radius)
+    }
+
+    /// The same gear of a tool whose tip has another radius \[modules\].
+    #[must_use]
+    pub fn with_tool_tip_radius(mut self, tip_radius: f64) -> Self {
+        match &mut self.cutter {
+            Some(cutter) => cutter.tip_radius = tip_radius,
+            None => self.rack.tip_radius = tip_radius,
+        }
+        self
+    }
 }
 
 /// Which of the two gears.
@@ -183,6 +205,17 @@ pub struct GearPair {
     pub base_pitch: f64,
     /// ε_α.
     pub contact_ratio: f64,
+}
+
+impl Gear {
+    /// h_fP \[modules\]: of its rack or, of one that is shaped, as deep as its cutter goes at x_E.
+    #[must_use]
+    pub fn dedendum(&self) -> f64 {
+        let Specification { module, rack, cutter, .. } = self.specification;
+        cutter.map_or(rack.dedendum, |_| {
+            (self.reference_radius - self.root_radius) / module + self.specification.generating_profile_shift()
+        })
+    }
 }
 
 impl GearPair {

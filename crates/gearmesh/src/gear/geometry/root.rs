@@ -149,7 +149,7 @@ impl Gear {
     }
 
     fn circular_fillet(&self) -> Result<Root, GeometryError> {
-        let radius = self.specification.rack.tip_radius * self.specification.module;
+        let radius = self.specification.tool_tip_radius() * self.specification.module;
         let root = self.unbounded_fillet(radius);
         let overlap = self.overlap(&root);
         if overlap > 1e-9 * self.root_radius {

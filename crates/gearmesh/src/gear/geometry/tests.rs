@@ -6,6 +6,7 @@ mod outline;
 mod passing;
 mod protuberance;
 mod refusals;
+mod shaping;
 mod usable;
 
 use std::f64::consts::PI;
@@ -27,6 +28,7 @@ fn specification(teeth: u32, module_mm: f64, profile_shift: f64) -> Specificatio
         pressure_angle: 20.0 * DEGREE,
         profile_shift,
         thickness_allowance: 0.0,
+        cutter: None,
         rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38, ..Rack::ISO_53_A },
         tip_radius: None,
         face_width: 0.02,

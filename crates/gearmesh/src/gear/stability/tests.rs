@@ -34,6 +34,7 @@ fn gear(teeth: u32, face_width: f64) -> Specification {
         pressure_angle: 20.0 * PI / 180.0,
         profile_shift: 0.0,
         thickness_allowance: 0.0,
+        cutter: None,
         rack: Rack {
             addendum: 1.0,
             dedendum: 1.25,

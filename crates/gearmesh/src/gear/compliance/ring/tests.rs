@@ -15,6 +15,7 @@ fn gear(teeth: u32, bore_ratio: f64) -> Gear {
         pressure_angle: 20f64.to_radians(),
         profile_shift: 0.0,
         thickness_allowance: 0.0,
+        cutter: None,
         rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38, ..Rack::ISO_53_A },
         tip_radius: None,
         face_width: 0.02,

@@ -19,6 +19,7 @@ fn pair() -> GearPair {
         pressure_angle: 20_f64.to_radians(),
         profile_shift: 0.0,
         thickness_allowance: 0.0,
+        cutter: None,
         rack: Rack { addendum: 1.0, dedendum: 1.167, tip_radius: 0.2, ..Rack::ISO_53_A },
         tip_radius: None,
         face_width: 25e-3,

@@ -1,13 +1,15 @@
-//! Teeth that other tools cut: their compliance follows the root.
+//! Teeth that other tools cut: their compliance follows the root, and so does the section that the rating takes.
 
 use crate::gear::compliance::energy::Beam;
 use crate::gear::compliance::sainsot::Body;
 use crate::gear::finite_elements::gear_model::GearModel;
 use crate::gear::finite_elements::mesh::Sizing;
 use crate::gear::fixtures::standard;
+use crate::gear::geometry::pinion_cutter::PinionCutter;
 use crate::gear::geometry::root::RootShape;
-use crate::gear::geometry::{Gear, Rack, Specification};
+use crate::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use crate::gear::material::Plane;
+use crate::gear::rating::root::critical_section;
 
 fn tooled(teeth: u32, profile_shift: f64, protuberance: f64, machining_allowance: f64) -> Specification {
     let rack = Rack { dedendum: 1.4, tip_radius: 0.3, protuberance, machining_allowance, ..Rack::ISO_53_A };
@@ -37,7 +39,7 @@ fn a_vanishing_protuberance_leaves_the_plain_tooth() {
     }
 }
 
-/// Tier: second way; what a protuberance or a notch takes off a tooth changes its compliance under a load at the tip by finite
+/// Tier: second way; what a protuberance, a notch or a cutter takes off a tooth changes its compliance under a load at the tip by finite
 /// elements as by the beam on its body: in the same direction, and by as much within a seventh of the change.
 #[test]
 fn finite_elements_follow_the_root() {
@@ -63,10 +65,33 @@ fn finite_elements_follow_the_root() {
             specification
         };
         let [plain, undercut, notched] = [given(0.0, 0.0), given(0.06, 0.0), given(0.0, 0.06)];
-        for other in [undercut, notched] {
+        let cutter = Some(PinionCutter { teeth: 20, profile_shift: 0.3, addendum: 1.25, tip_radius: 0.1 });
+        for other in [undercut, notched, Specification { cutter, ..plain }] {
             let elements = by_elements(&other) - by_elements(&plain);
             let beam = on_body(&other) - on_body(&plain);
             assert!((elements / beam - 1.0).abs() < 0.15, "{teeth} {:?}: {elements:e} for {beam:e}", other.rack);
         }
+    }
+}
+
+/// Tier: order of convergence; a cutter of more and more teeth leaves the compliance and the critical section of the rack, as 1/z_0.
+#[test]
+fn many_teeth_make_a_cutter_a_rack() {
+    let rack = Rack::ISO_53_A;
+    let plain = [20, 33].map(|teeth| Specification { rack, ..standard(teeth, 3e-3, 2.0) });
+    let values = |cutter: Option<PinionCutter>| {
+        let [pinion, gear] = plain.map(|specification| Specification { cutter, ..specification });
+        let pair = GearPair::new(pinion, gear, None).unwrap();
+        let section = critical_section(&pair, Side::Pinion).unwrap();
+        [bending(&pinion), bending(&gear), section.form_factor, section.stress_correction_factor]
+    };
+    let exact = values(None);
+    let errors = |teeth: u32| {
+        let found = values(Some(PinionCutter { teeth, profile_shift: 0.0, addendum: 1.25, tip_radius: 0.38 }));
+        [0, 1, 2, 3].map(|at| found[at] / exact[at] - 1.0)
+    };
+    let (coarse, fine) = (errors(2000), errors(4000));
+    for (coarse, fine) in coarse.into_iter().zip(fine) {
+        assert!(coarse.abs() < 2e-3 && (coarse / fine - 2.0).abs() < 0.05, "{coarse:e} {fine:e}");
     }
 }

@@ -25,6 +25,14 @@ pub enum Parameter {
     MachiningAllowance,
     /// ρ_g*.
     NotchRadius,
+    /// z_0.
+    CutterTeeth,
+    /// x_0.
+    CutterProfileShift,
+    /// h_aP0*.
+    CutterAddendum,
+    /// ρ_aP0*.
+    CutterTipRadius,
     /// r_a.
     TipRadius,
     /// b.
@@ -57,6 +65,10 @@ impl Parameter {
             Self::ProtuberanceAngle => "the angle of the protuberance",
             Self::MachiningAllowance => "the machining allowance",
             Self::NotchRadius => "the radius of the grinding notch",
+            Self::CutterTeeth => "the cutter's number of teeth",
+            Self::CutterProfileShift => "the cutter's profile shift",
+            Self::CutterAddendum => "the cutter's addendum",
+            Self::CutterTipRadius => "the cutter's tip radius",
             Self::TipRadius => "the tip radius",
             Self::FaceWidth => "the face width",
             Self::BoreRadius => "the bore radius",

@@ -13,6 +13,7 @@ fn specification(teeth: u32, module: f64, profile_shift: f64, rack: Rack) -> Spe
         pressure_angle: 20_f64.to_radians(),
         profile_shift,
         thickness_allowance: 0.0,
+        cutter: None,
         rack,
         tip_radius: None,
         face_width: 10.0 * module,

@@ -178,6 +178,9 @@ fn the_critical_section_is_on_the_generated_curve() {
         let ([x, y], (_, rate, turning)) = (curve.point_at(q.unwrap()), curve.rates(q.unwrap()));
         let load_radius = 0.5 * f64::from(teeth) + 1.0;
         let found = section(&Tooth { rack, ..tooth(f64::from(teeth), 0.0, 0.3, load_radius) }).unwrap();
+        let by_curve = section_of_curve(&Tooth { rack, ..tooth(f64::from(teeth), 0.0, 0.3, load_radius) }, &curve, 1.0);
+        let differs = by_curve.unwrap().form_factor / found.form_factor - 1.0;
+        assert!(differs.abs() < 1e-11, "{residual}: {differs:e}");
         assert!((found.chord / (2.0 * x) - 1.0).abs() < 1e-12, "{residual}: {} {x}", found.chord);
         assert!((found.fillet_radius / (rate / turning) - 1.0).abs() < 1e-12, "{residual}");
         let apex = 0.5 * f64::from(teeth) * 20_f64.to_radians().cos() / found.load_angle.cos();

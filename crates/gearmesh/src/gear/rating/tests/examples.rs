@@ -92,6 +92,7 @@ fn steel_on_plastic() -> (GearPair, Conditions) {
     let own = |teeth: u32, shift: f64, dedendum: f64, tip: f64, width: f64, material: Material| Specification {
         profile_shift: shift,
         thickness_allowance: 0.0,
+        cutter: None,
         rack: Rack { addendum: 1.0, dedendum, tip_radius: 0.2, ..Rack::ISO_53_A },
         tip_radius: Some(0.5 * tip),
         face_width: width,

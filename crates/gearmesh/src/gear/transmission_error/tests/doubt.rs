@@ -132,6 +132,7 @@ fn contact_beside_the_base_circle_is_told() {
         pressure_angle: 20_f64.to_radians(),
         profile_shift: 0.0,
         thickness_allowance: 0.0,
+        cutter: None,
         rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38, ..Rack::ISO_53_A },
         tip_radius: None,
         face_width: 18e-3,

@@ -7,7 +7,7 @@
 use super::{Root, Toe};
 use crate::gear::geometry::error::{GeometryError, Millimetres, Plain, Problem};
 use crate::gear::geometry::root::RootShape;
-use crate::gear::geometry::{Gear, Rack, Specification, trochoid};
+use crate::gear::geometry::{Gear, trochoid};
 use crate::numeric::crossing;
 use declare::{Declared, Words};
 
@@ -35,11 +35,11 @@ impl Root for Trochoid {
     fn toe(&self, gear: &Gear) -> Result<Toe, GeometryError> {
         let given = gear.specification;
         let tip_radius = match self.rack_tip {
-            RackTip::Given => given.rack.tip_radius,
+            RackTip::Given => given.tool_tip_radius(),
             RackTip::Sharp => 0.0,
             RackTip::FullRound => trochoid::full_round(&given),
         };
-        let other = Gear::new(&Specification { rack: Rack { tip_radius, ..given.rack }, ..given })?;
+        let other = Gear::new(&given.with_tool_tip_radius(tip_radius))?;
         let root = other.root(RootShape::Trochoid)?;
         let curve = other.trochoid();
         // Deep undercut may leave no neck: where the curve runs straight up, or goes over into what follows, the tooth is
