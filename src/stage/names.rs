@@ -57,6 +57,8 @@ tables! {
         TIP_RADIUS = "tip_radius",
         TIP_CHAMFER = "tip_chamfer",
         TIP_ROUNDING = "tip_rounding",
+        TIP_RAMP_ANGLE = "tip_ramp_angle",
+        TIP_RAMP_HEIGHT = "tip_ramp_height",
     }
     pair of "geometry": "pair" { CENTRE_DISTANCE = "centre_distance" }
     outline of "geometry": "outline" {

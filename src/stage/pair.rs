@@ -81,6 +81,17 @@ pub fn gears<'a>() -> Columns<GearRow<'a>> {
         .float(names::gears::TIP_ROUNDING, "mm", "Radius of the rounding at the tip; 0 without one.", |row| {
             if let Tip::Rounding(radius) = row.1.tip { radius } else { 0.0 }
         })
+        .float(names::gears::TIP_RAMP_ANGLE, "deg", "Angle α_KP of a semi-topping tool's ramp; 0 without one.", |row| {
+            if let Tip::SemiTopping { angle, .. } = row.1.tip { angle } else { 0.0 }
+        })
+        .float(
+            names::gears::TIP_RAMP_HEIGHT,
+            "mm",
+            "How far below the rack's addendum line the ramp begins h_K.",
+            |row| {
+                if let Tip::SemiTopping { height, .. } = row.1.tip { height } else { 0.0 }
+            },
+        )
         .float("reference_radius", "mm", "Reference radius r.", |row| row.1.reference_radius)
         .float("base_radius", "mm", "Base radius r_b.", |row| row.1.base_radius)
         .float(names::gears::TIP_RADIUS, "mm", "Tip radius r_a.", |row| row.1.tip_radius)
@@ -178,8 +189,16 @@ pub fn read(gears: &Table, pair: &Table) -> Result<GearPair, Failure> {
     };
     let tip = |side: Side| {
         let row = row(gears, side)?;
-        let [chamfer, rounding] =
-            [names::gears::TIP_CHAMFER, names::gears::TIP_ROUNDING].map(|column| si(gears, column, row));
+        let [chamfer, rounding, angle, height] = [
+            names::gears::TIP_CHAMFER,
+            names::gears::TIP_ROUNDING,
+            names::gears::TIP_RAMP_ANGLE,
+            names::gears::TIP_RAMP_HEIGHT,
+        ]
+        .map(|column| si(gears, column, row));
+        if angle > 0.0 {
+            return Ok(Tip::SemiTopping { angle, height });
+        }
         Ok::<_, Failure>(match (chamfer > 0.0, rounding > 0.0) {
             (false, false) => Tip::Land,
             (true, _) => Tip::Chamfer(chamfer),

@@ -92,7 +92,7 @@ beyond = {
     "empty_file", "no_designs", "condition_of_a_figure", "constraint_sign", "constraint_unit", "constraint_unknown_column",
     "constraints_contradict", "objective_unknown", "objectives_for_one", "sizing_objectives", "units_of_a_claim",
     "rating_design_alone", "protuberance_leaves_no_flank", "protuberance_as_steep_as_the_flank", "allowance_leaves_no_tool",
-    "notch_without_radius",
+    "notch_without_radius", "cutter_pointed", "cutter_too_small", "cutter_too_round",
 }
 seen = []
 for path in sorted(pathlib.Path("tests/bad").glob("*.yaml")):

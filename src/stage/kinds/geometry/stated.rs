@@ -130,6 +130,7 @@ impl StatedGears {
                 Parameter::Teeth => inside(gear, own.teeth),
                 Parameter::ProfileShift => inside(gear, own.profile_shift),
                 Parameter::TipRadius => inside(gear, own.tip_radius),
+                Parameter::TipAngle => inside(gear, own.tip),
                 Parameter::ToothThickness => inside(gear, own.tooth_thickness),
                 Parameter::FaceWidth => inside(gear, own.face_width),
                 Parameter::BoreRadius => inside(gear, own.bore_radius),

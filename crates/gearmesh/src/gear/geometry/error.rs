@@ -348,6 +348,7 @@ impl GeometryError {
     #[must_use]
     pub fn subject(&self) -> Subject {
         Subject::Parameter(match &self.problem {
+            Problem::OutOfRange { parameter: Parameter::TipAngle, .. } => return Subject::Tip,
             Problem::OutOfRange { parameter, .. } | Problem::Differs { parameter, .. } => *parameter,
             Problem::NoTipLand { .. } => Parameter::PressureAngle,
             Problem::TipRoundTooLarge { .. } | Problem::FilletDoesNotFit { .. } => Parameter::RackTipRadius,

@@ -6,6 +6,7 @@ mod outline;
 mod passing;
 mod protuberance;
 mod refusals;
+mod semi_topping;
 mod shaping;
 mod usable;
 

@@ -35,6 +35,8 @@ pub enum Parameter {
     CutterTipRadius,
     /// r_a.
     TipRadius,
+    /// α_KP.
+    TipAngle,
     /// b.
     FaceWidth,
     /// Radius of the bore.
@@ -69,6 +71,7 @@ impl Parameter {
             Self::CutterProfileShift => "the cutter's profile shift",
             Self::CutterAddendum => "the cutter's addendum",
             Self::CutterTipRadius => "the cutter's tip radius",
+            Self::TipAngle => "the angle of the tip's chamfer",
             Self::TipRadius => "the tip radius",
             Self::FaceWidth => "the face width",
             Self::BoreRadius => "the bore radius",
