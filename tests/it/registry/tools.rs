@@ -6,21 +6,21 @@ use super::walk::{Ran, load, walk};
 use gearstudy::stage::pair;
 use studygraph::table::data::Table;
 
-/// What is said of the tool of both gears, and how much softer or stiffer than with the plain rack the teeth are.
+/// What is said of the tool of both gears, and by how much the mean transmission error under load is larger than with the plain rack.
 const TOOLS: &[(&str, &str, std::ops::Range<f64>)] = &[
     ("plain", "rack: { dedendum: 1.4, tip_radius: 0.3 }", 0.999_999..1.000_001),
     (
         "protuberance",
-        "rack: { dedendum: 1.4, tip_radius: 0.3, protuberance: 0.08, machining_allowance: 0.03 }",
-        1.01..1.1,
+        "rack: { dedendum: 1.4, tip_radius: 0.3, protuberance: 0.05, machining_allowance: 0.03 }",
+        1.001..1.1,
     ),
     (
         "allowance covered",
         "rack: { dedendum: 1.4, tip_radius: 0.3, protuberance: 0.05, machining_allowance: 0.05 }",
         0.999_999..1.000_001,
     ),
-    ("notch", "rack: { dedendum: 1.4, tip_radius: 0.3, machining_allowance: 0.05, notch_radius: 0.15 }", 0.9..0.99),
-    ("cutter", "pinion_cutter: { teeth: 23, profile_shift: 0.1, addendum: 1.4, tip_radius: 0.2 }", 1.0..1.1),
+    ("notch", "rack: { dedendum: 1.4, tip_radius: 0.3, machining_allowance: 0.05, notch_radius: 0.15 }", 0.97..0.99),
+    ("cutter", "pinion_cutter: { teeth: 23, profile_shift: 0.1, addendum: 1.4, tip_radius: 0.15 }", 0.97..0.99),
 ];
 
 const METHODS: [&str; 4] = ["energy", "weber_banaschek", "iso6336", "{ finite_element: { elements_across: 8 } }"];
@@ -35,7 +35,8 @@ fn study(tool: &str) -> String {
         gear("gear", 31)
     );
     for (index, method) in METHODS.iter().enumerate() {
-        text += &format!("  k{index}: {{ kind: stiffness, pair: pair, method: {method} }}\n");
+        let torque = if method.contains("finite_element") { ", torque: 50 N m" } else { "" };
+        text += &format!("  k{index}: {{ kind: stiffness, pair: pair, method: {method}{torque} }}\n");
     }
     text += "  designs: { kind: modification, pair: pair, designs: { plain: [] } }\n";
     text + "  ste: { kind: ste, stiffness: k0, designs: [designs], torque: 50 N m }\n"
@@ -63,7 +64,7 @@ fn every_tool_goes_from_end_to_end() {
             let depth = inspection.floats("notch_depth")[row];
             let undercut = inspection.floats("residual_undercut")[row];
             assert!((depth - if *name == "notch" { 0.1 } else { 0.0 }).abs() < 1e-12, "{name}: {depth}");
-            assert!((undercut - if *name == "protuberance" { 0.1 } else { 0.0 }).abs() < 1e-12, "{name}: {undercut}");
+            assert!((undercut - if *name == "protuberance" { 0.04 } else { 0.0 }).abs() < 1e-12, "{name}: {undercut}");
         }
         let junctions = table(&ran, "pair", "junctions");
         assert!(junctions.floats("position_jump").iter().all(|jump| *jump < 1e-9), "{name}");

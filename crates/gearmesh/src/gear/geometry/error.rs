@@ -348,7 +348,9 @@ impl GeometryError {
     #[must_use]
     pub fn subject(&self) -> Subject {
         Subject::Parameter(match &self.problem {
-            Problem::OutOfRange { parameter: Parameter::TipAngle, .. } => return Subject::Tip,
+            Problem::OutOfRange { parameter: Parameter::TipAngle, .. } | Problem::TipBreakTooLarge { .. } => {
+                return Subject::Tip;
+            }
             Problem::OutOfRange { parameter, .. } | Problem::Differs { parameter, .. } => *parameter,
             Problem::NoTipLand { .. } => Parameter::PressureAngle,
             Problem::TipRoundTooLarge { .. } | Problem::FilletDoesNotFit { .. } => Parameter::RackTipRadius,
@@ -362,7 +364,6 @@ impl GeometryError {
             Problem::RootArcTooLarge { .. } | Problem::NothingBelowBase { .. } | Problem::CutOff { .. } => {
                 return Subject::Root;
             }
-            Problem::TipBreakTooLarge { .. } => return Subject::Tip,
             Problem::ReliefTooDeep { .. } | Problem::TipTakenOff { .. } => return Subject::Flank,
             Problem::Pointed { tip_is_given: false, .. } | Problem::ProfileShiftSum { .. } => Parameter::ProfileShift,
             Problem::Pointed { .. } | Problem::NoClearance { .. } => Parameter::TipRadius,

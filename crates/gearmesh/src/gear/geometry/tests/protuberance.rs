@@ -143,12 +143,12 @@ fn straight_end(specification: &Specification) -> f64 {
 /// Tier: closed form; each refusal names the bound: the land of the tool, π/4 cos α − h_fP sin α without protuberance.
 #[test]
 fn what_cannot_cut_is_refused_with_numbers() {
+    type Case = (fn(&mut Rack), Parameter, &'static str);
     let refused = |rack: fn(&mut Rack)| {
         let mut specification = tooled(20, 0.0, 0.0, 0.0);
         rack(&mut specification.rack);
         Gear::new(&specification).unwrap_err()
     };
-    type Case = (fn(&mut Rack), Parameter, &'static str);
     let cases: [Case; 5] = [
         (|rack| rack.protuberance = -0.1, Parameter::Protuberance, "0 to 1 modules"),
         (

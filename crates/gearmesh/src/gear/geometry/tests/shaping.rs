@@ -159,12 +159,12 @@ fn many_teeth_make_it_a_rack() {
 /// Tier: closed form; just above its least profile shift a gear is not undercut, just below it is; and each refusal names its bound.
 #[test]
 fn cutters_that_cannot_cut_are_refused_with_numbers() {
+    type Case = (PinionCutter, Parameter, &'static str);
     let cutter = PinionCutter { teeth: 25, profile_shift: 0.1, addendum: 1.25, tip_radius: 0.2 };
     let gear = Gear::new(&shaped(14, 0.3, cutter)).unwrap();
     let least = gear.least_shift_without_undercut();
     let is_undercut = |shift: f64| Gear::new(&shaped(14, shift, cutter)).unwrap().undercut;
     assert!(is_undercut(least - 1e-6) && !is_undercut(least + 1e-6), "{least}");
-    type Case = (PinionCutter, Parameter, &'static str);
     let cases: [Case; 5] = [
         (PinionCutter { tip_radius: 0.6, ..cutter }, Parameter::CutterTipRadius, "must be 0 to"),
         (PinionCutter { profile_shift: 2.5, ..cutter }, Parameter::CutterProfileShift, "pointed"),
