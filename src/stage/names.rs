@@ -42,6 +42,14 @@ tables! {
         RACK_ADDENDUM = "rack_addendum",
         RACK_DEDENDUM = "rack_dedendum",
         RACK_TIP_RADIUS = "rack_tip_radius",
+        PROTUBERANCE = "protuberance",
+        PROTUBERANCE_ANGLE = "protuberance_angle",
+        MACHINING_ALLOWANCE = "machining_allowance",
+        NOTCH_RADIUS = "notch_radius",
+        CUTTER_TEETH = "cutter_teeth",
+        CUTTER_PROFILE_SHIFT = "cutter_profile_shift",
+        CUTTER_ADDENDUM = "cutter_addendum",
+        CUTTER_TIP_RADIUS = "cutter_tip_radius",
         FACE_WIDTH = "face_width",
         BORE_RADIUS = "bore_radius",
         YOUNGS_MODULUS = "youngs_modulus",
@@ -50,6 +58,8 @@ tables! {
         TIP_RADIUS = "tip_radius",
         TIP_CHAMFER = "tip_chamfer",
         TIP_ROUNDING = "tip_rounding",
+        TIP_RAMP_ANGLE = "tip_ramp_angle",
+        TIP_RAMP_HEIGHT = "tip_ramp_height",
     }
     pair of "geometry": "pair" { CENTRE_DISTANCE = "centre_distance" }
     outline of "geometry": "outline" {

@@ -8,6 +8,7 @@ use crate::stage::{Inputs, Port};
 use declare::error::Failure;
 use declare::units::parse_unit;
 use gearmesh::gear::geometry::outline::tip::Tip;
+use gearmesh::gear::geometry::pinion_cutter::PinionCutter;
 use gearmesh::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use gearmesh::gear::material::Material;
 use studygraph::table::columns::Columns;
@@ -42,6 +43,30 @@ pub fn gears<'a>() -> Columns<GearRow<'a>> {
         .float(names::gears::RACK_TIP_RADIUS, "", "Tip radius of the cutting rack ρ_fP*, in modules.", |row| {
             row.1.specification.rack.tip_radius
         })
+        .float(names::gears::PROTUBERANCE, "", "Protuberance of the cutting rack pr*, in modules.", |row| {
+            row.1.specification.rack.protuberance
+        })
+        .float(names::gears::PROTUBERANCE_ANGLE, "deg", "Angle of the protuberance's straight side α_prP.", |row| {
+            row.1.specification.rack.protuberance_angle
+        })
+        .float(names::gears::MACHINING_ALLOWANCE, "", "Machining allowance on each flank q*, in modules.", |row| {
+            row.1.specification.rack.machining_allowance
+        })
+        .float(names::gears::NOTCH_RADIUS, "", "Radius of a grinding notch in the root ρ_g*, in modules.", |row| {
+            row.1.specification.rack.notch_radius
+        })
+        .integer(names::gears::CUTTER_TEETH, "Teeth of the pinion-type cutter z_0; 0 where a rack cuts.", |row| {
+            row.1.specification.cutter.map_or(0, |cutter| cutter.teeth)
+        })
+        .float(names::gears::CUTTER_PROFILE_SHIFT, "", "Profile shift coefficient of the cutter x_0.", |row| {
+            row.1.specification.cutter.map_or(0.0, |cutter| cutter.profile_shift)
+        })
+        .float(names::gears::CUTTER_ADDENDUM, "", "Addendum of the cutter h_aP0*, in modules.", |row| {
+            row.1.specification.cutter.map_or(0.0, |cutter| cutter.addendum)
+        })
+        .float(names::gears::CUTTER_TIP_RADIUS, "", "Radius of the cutter's tip rounding ρ_aP0*, in modules.", |row| {
+            row.1.specification.cutter.map_or(0.0, |cutter| cutter.tip_radius)
+        })
         .float(names::gears::FACE_WIDTH, "mm", "Face width b.", |row| row.1.specification.face_width)
         .float(names::gears::BORE_RADIUS, "mm", "Radius of the bore, where the body is clamped.", |row| {
             row.1.specification.bore_radius
@@ -57,6 +82,17 @@ pub fn gears<'a>() -> Columns<GearRow<'a>> {
         .float(names::gears::TIP_ROUNDING, "mm", "Radius of the rounding at the tip; 0 without one.", |row| {
             if let Tip::Rounding(radius) = row.1.tip { radius } else { 0.0 }
         })
+        .float(names::gears::TIP_RAMP_ANGLE, "deg", "Angle α_KP of a semi-topping tool's ramp; 0 without one.", |row| {
+            if let Tip::SemiTopping { angle, .. } = row.1.tip { angle } else { 0.0 }
+        })
+        .float(
+            names::gears::TIP_RAMP_HEIGHT,
+            "mm",
+            "How far below the rack's addendum line the ramp begins h_K.",
+            |row| {
+                if let Tip::SemiTopping { height, .. } = row.1.tip { height } else { 0.0 }
+            },
+        )
         .float("reference_radius", "mm", "Reference radius r.", |row| row.1.reference_radius)
         .float("base_radius", "mm", "Base radius r_b.", |row| row.1.base_radius)
         .float(names::gears::TIP_RADIUS, "mm", "Tip radius r_a.", |row| row.1.tip_radius)
@@ -117,8 +153,11 @@ pub fn read(gears: &Table, pair: &Table) -> Result<GearPair, Failure> {
     let specification = |side: Side| -> Result<Specification, Failure> {
         let row = row(gears, side)?;
         let value = |column: &str| si(gears, column, row);
-        let teeth = u32::try_from(gears.integers(names::gears::TEETH)[row])
-            .map_err(|_| Failure::new("the number of teeth is out of range"))?;
+        let whole = |column: &str| {
+            let found = u32::try_from(gears.integers(column)[row]);
+            found.map_err(|_| Failure::new(format!("`{column}` is out of range")))
+        };
+        let (teeth, cutter_teeth) = (whole(names::gears::TEETH)?, whole(names::gears::CUTTER_TEETH)?);
         Ok(Specification {
             teeth,
             module: value(names::gears::MODULE),
@@ -129,7 +168,17 @@ pub fn read(gears: &Table, pair: &Table) -> Result<GearPair, Failure> {
                 addendum: value(names::gears::RACK_ADDENDUM),
                 dedendum: value(names::gears::RACK_DEDENDUM),
                 tip_radius: value(names::gears::RACK_TIP_RADIUS),
+                protuberance: value(names::gears::PROTUBERANCE),
+                protuberance_angle: value(names::gears::PROTUBERANCE_ANGLE),
+                machining_allowance: value(names::gears::MACHINING_ALLOWANCE),
+                notch_radius: value(names::gears::NOTCH_RADIUS),
             },
+            cutter: (cutter_teeth > 0).then(|| PinionCutter {
+                teeth: cutter_teeth,
+                profile_shift: value(names::gears::CUTTER_PROFILE_SHIFT),
+                addendum: value(names::gears::CUTTER_ADDENDUM),
+                tip_radius: value(names::gears::CUTTER_TIP_RADIUS),
+            }),
             tip_radius: Some(value(names::gears::TIP_RADIUS)),
             face_width: value(names::gears::FACE_WIDTH),
             bore_radius: value(names::gears::BORE_RADIUS),
@@ -142,8 +191,16 @@ pub fn read(gears: &Table, pair: &Table) -> Result<GearPair, Failure> {
     };
     let tip = |side: Side| {
         let row = row(gears, side)?;
-        let [chamfer, rounding] =
-            [names::gears::TIP_CHAMFER, names::gears::TIP_ROUNDING].map(|column| si(gears, column, row));
+        let [chamfer, rounding, angle, height] = [
+            names::gears::TIP_CHAMFER,
+            names::gears::TIP_ROUNDING,
+            names::gears::TIP_RAMP_ANGLE,
+            names::gears::TIP_RAMP_HEIGHT,
+        ]
+        .map(|column| si(gears, column, row));
+        if angle > 0.0 {
+            return Ok(Tip::SemiTopping { angle, height });
+        }
         Ok::<_, Failure>(match (chamfer > 0.0, rounding > 0.0) {
             (false, false) => Tip::Land,
             (true, _) => Tip::Chamfer(chamfer),

@@ -14,6 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         pressure_angle: 20_f64.to_radians(),
         profile_shift: 0.0,
         thickness_allowance: 0.0,
+        cutter: None,
         rack: Rack::ISO_53_A,
         tip_radius: None,
         face_width: 20e-3,

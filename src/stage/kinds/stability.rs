@@ -264,6 +264,17 @@ impl Stage for Stability {
                 side.name()
             )));
         }
+        let other_tool = |side: &Side| {
+            let specification = &pair.side(*side).specification;
+            specification.cutter.is_some() || specification.rack.residual_undercut().abs() > 0.0
+        };
+        if let Some(side) = [Side::Pinion, Side::Gear].into_iter().find(other_tool) {
+            return Err(Failure::new(format!(
+                "the {} is cut by a rack with protuberance or stock, or by a pinion-type cutter; the second evaluation knows \
+                 plain racks only: check a geometry with one",
+                side.name()
+            )));
+        }
         let mut base = Point::of(&pair);
         [base.torque, base.relief, base.relief_length, base.crowning] = self.load;
         let cases = self.cases(&base, context);

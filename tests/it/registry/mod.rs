@@ -7,6 +7,7 @@ mod members;
 mod profiles;
 mod samples;
 mod searches;
+mod tools;
 pub mod walk;
 
 use std::collections::BTreeSet;

@@ -21,8 +21,12 @@ const ROOTS: &[(&str, &str)] = &[
     ("optimised_arc", "optimised_arc"),
 ];
 
-const TIPS: &[(&str, &str)] =
-    &[("land", "land"), ("chamfer", "{ chamfer: { size: 0.2 mm } }"), ("rounding", "{ rounding: { radius: 0.2 mm } }")];
+const TIPS: &[(&str, &str)] = &[
+    ("land", "land"),
+    ("chamfer", "{ chamfer: { size: 0.2 mm } }"),
+    ("rounding", "{ rounding: { radius: 0.2 mm } }"),
+    ("semi_topping", "{ semi_topping: { height: 0.2 mm } }"),
+];
 
 fn study(teeth: u32, outline: &str) -> String {
     format!(

@@ -60,7 +60,7 @@ impl Random {
             let gear = (f64::from(pinion) * self.between(1.0, 5.0)) as u32;
             let shifts = if self.share() < 0.5 { [0.0; 2] } else { [self.between(0.0, 0.5), self.between(-0.4, 0.3)] };
             let width = module * self.between(3.0, 15.0);
-            let rack = Rack { addendum: 1.0, dedendum: 1.25, tip_radius: self.between(0.1, 0.3) };
+            let rack = Rack { addendum: 1.0, dedendum: 1.25, tip_radius: self.between(0.1, 0.3), ..Rack::ISO_53_A };
             let bore = self.between(1.4, 4.0);
             let of = |teeth: u32, profile_shift: f64| Specification {
                 teeth,
@@ -68,6 +68,7 @@ impl Random {
                 pressure_angle: angle,
                 profile_shift,
                 thickness_allowance: 0.0,
+                cutter: None,
                 rack,
                 tip_radius: None,
                 face_width: width,

@@ -13,6 +13,7 @@ use gearmesh::gear::geometry::error::{GeometryError, Parameter, Subject};
 use gearmesh::gear::geometry::outline::roots::Root;
 use gearmesh::gear::geometry::outline::tip::{self, Tip};
 use gearmesh::gear::geometry::pair;
+use gearmesh::gear::geometry::pinion_cutter::PinionCutter;
 use gearmesh::gear::geometry::thickness::{self, Limits};
 use gearmesh::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use gearmesh::gear::material::Material;
@@ -129,6 +130,8 @@ pub struct StatedGear {
     pub measured_with: MeasuredWith,
     /// Basic rack that cuts this gear, when it is not the common one.
     pub rack: Option<Rack>,
+    /// Pinion-type cutter that shapes this gear, where no rack cuts it; of the rack its addendum counts then.
+    pub pinion_cutter: Option<PinionCutter>,
     /// Root of this gear's teeth in its outline, when it is not the common one.
     pub root: Option<Box<dyn Root>>,
     /// Corners of this gear's tips, when they are not the common ones.
@@ -159,11 +162,13 @@ impl StatedGears {
             let of = if of.entry(own.rack).is_some() { of.inside(own.rack) } else { record.inside(names.rack) };
             of.place_of(field)
         };
+        let cutter = |field| record.inside(gear).inside(own.pinion_cutter).place_of(field);
         match error.subject() {
             Subject::Parameter(parameter) => match parameter {
                 Parameter::Teeth => inside(gear, own.teeth),
                 Parameter::ProfileShift => inside(gear, own.profile_shift),
                 Parameter::TipRadius => inside(gear, own.tip_radius),
+                Parameter::TipAngle => inside(gear, own.tip),
                 Parameter::ToothThickness => inside(gear, own.tooth_thickness),
                 Parameter::FaceWidth => inside(gear, own.face_width),
                 Parameter::BoreRadius => inside(gear, own.bore_radius),
@@ -173,6 +178,14 @@ impl StatedGears {
                 Parameter::RackAddendum => rack(Rack::NAMES.addendum),
                 Parameter::RackDedendum => rack(Rack::NAMES.dedendum),
                 Parameter::RackTipRadius => rack(Rack::NAMES.tip_radius),
+                Parameter::Protuberance => rack(Rack::NAMES.protuberance),
+                Parameter::ProtuberanceAngle => rack(Rack::NAMES.protuberance_angle),
+                Parameter::MachiningAllowance => rack(Rack::NAMES.machining_allowance),
+                Parameter::NotchRadius => rack(Rack::NAMES.notch_radius),
+                Parameter::CutterTeeth => cutter(PinionCutter::NAMES.teeth),
+                Parameter::CutterProfileShift => cutter(PinionCutter::NAMES.profile_shift),
+                Parameter::CutterAddendum => cutter(PinionCutter::NAMES.addendum),
+                Parameter::CutterTipRadius => cutter(PinionCutter::NAMES.tip_radius),
                 Parameter::YoungsModulus => inside(names.material, Material::NAMES.youngs_modulus),
                 Parameter::PoissonRatio => inside(names.material, Material::NAMES.poisson_ratio),
             },
@@ -297,6 +310,7 @@ impl StatedGears {
             profile_shift,
             thickness_allowance: 0.0,
             rack,
+            cutter: gear.pinion_cutter,
             tip_radius: gear.tip_radius.or_else(|| {
                 let height = rack.addendum + profile_shift - gear.tip_shortening.or(follows)?;
                 Some(module * (0.5 * f64::from(gear.teeth) + height))

@@ -24,7 +24,6 @@ use crate::gear::contact::wedge;
 use crate::gear::finite_elements::gear_model::{FlankLoad, GearModel, Influences};
 use crate::gear::finite_elements::mesh::Sizing;
 use crate::gear::finite_elements::{MeshError, root_stress};
-use crate::gear::geometry::outline::tip::Tip;
 use crate::gear::geometry::root::Root;
 use crate::gear::geometry::{Gear, GearPair, Side};
 use crate::gear::material::Plane;
@@ -211,10 +210,8 @@ impl<'a> Task<'a> {
         }
         let resolved = assumptions.contact == ContactLaw::Resolved;
         let minimum = LEAST_TIP_BREAK * gear.specification.module;
-        if let Tip::Chamfer(size) | Tip::Rounding(size) = gear.tip
-            && size > 0.0
-            && size < minimum
-        {
+        let size = gear.tip.size(gear);
+        if size > 0.0 && size < minimum {
             return Err(ComplianceError::SmallTipBreak { side, size, minimum });
         }
         let rolls = nodes(root.form_roll, gear.flank_end.roll, loads(assumptions.contact));

@@ -11,7 +11,7 @@
 use super::{
     Assumptions, ComplianceError, Foreseen, Method, PairCompliance, ROUNDING, Tabulated, ToothCompliance, integrated,
 };
-use crate::gear::geometry::{GearPair, Side, Specification};
+use crate::gear::geometry::{Gear, GearPair, Side};
 use crate::gear::material::Plane;
 use crate::gear::work::COMPLIANCE_EVALUATIONS;
 use crate::numeric::chebyshev::Series;
@@ -68,20 +68,20 @@ impl Inputs {
     /// The facts of a spur pair, with the factors of the method.
     #[must_use]
     pub fn of(pair: &GearPair, method: &Iso6336) -> Self {
-        let mut both = [&pair.pinion.specification, &pair.gear.specification];
+        let mut both = [&pair.pinion, &pair.gear];
         // The standard's first gear is the smaller one, whichever drives.
-        let later = |gear: &Specification| (gear.teeth, -gear.profile_shift);
+        let later = |gear: &Gear| (gear.specification.teeth, -gear.specification.profile_shift);
         if later(both[0]) > later(both[1]) {
             both.swap(0, 1);
         }
         Self {
-            teeth: both.map(|gear| f64::from(gear.teeth)),
-            profile_shift: both.map(|gear| gear.profile_shift),
-            dedendum: both.map(|gear| gear.rack.dedendum),
-            pressure_angle: both[0].pressure_angle,
+            teeth: both.map(|gear| f64::from(gear.specification.teeth)),
+            profile_shift: both.map(|gear| gear.specification.profile_shift),
+            dedendum: both.map(Gear::dedendum),
+            pressure_angle: both[0].specification.pressure_angle,
             helix_angle: 0.0,
             contact_ratio: pair.contact_ratio,
-            youngs_modulus: both.map(|gear| gear.material.youngs_modulus),
+            youngs_modulus: both.map(|gear| gear.specification.material.youngs_modulus),
             correction_factor: method.correction_factor,
             blank_factor: method.blank_factor,
         }
@@ -206,8 +206,8 @@ fn warnings(inputs: &Inputs, pair: &GearPair, torque: Option<f64>) -> Vec<String
 mod tests {
     use super::*;
     use crate::gear::compliance::ContactLaw;
-    use crate::gear::geometry::Rack;
     use crate::gear::geometry::root::RootShape;
+    use crate::gear::geometry::{Rack, Specification};
     use crate::gear::material::Material;
     use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
     use crate::gear::transmission_error::stiffness::stiffness as mesh_stiffness;
@@ -240,13 +240,14 @@ mod tests {
     }
 
     fn pair(teeth: [u32; 2], shift: [f64; 2], addendum: f64) -> GearPair {
-        let rack = Rack { addendum, dedendum: addendum + 0.25, tip_radius: 0.2 };
+        let rack = Rack { addendum, dedendum: addendum + 0.25, tip_radius: 0.2, ..Rack::ISO_53_A };
         let gear = |index: usize| Specification {
             teeth: teeth[index],
             module: 3e-3,
             pressure_angle: 20f64.to_radians(),
             profile_shift: shift[index],
             thickness_allowance: 0.0,
+            cutter: None,
             rack,
             tip_radius: None,
             face_width: [20e-3, 18e-3][index],

@@ -4,6 +4,7 @@ mod methods;
 mod reference;
 mod sampled;
 mod scaling;
+mod tools;
 
 use super::energy::{Beam, Energy, GearBody};
 use super::ring::Ring;
@@ -26,7 +27,8 @@ fn specifications(module: f64, bore_ratio: f64) -> [Specification; 2] {
         pressure_angle: angle,
         profile_shift: 0.0,
         thickness_allowance: 0.0,
-        rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.25 / (1.0 - angle.sin()) },
+        cutter: None,
+        rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.25 / (1.0 - angle.sin()), ..Rack::ISO_53_A },
         tip_radius: None,
         face_width: width * module,
         bore_radius: module * (0.5 * f64::from(teeth) - 1.25) / bore_ratio,
@@ -242,7 +244,7 @@ fn neighbours_are_those_of_the_ring() {
 fn three_coupled_teeth_give_a_positive_definite_matrix() {
     let high = |teeth: u32| Specification {
         teeth,
-        rack: Rack { addendum: 1.4, dedendum: 1.6, tip_radius: 0.2 },
+        rack: Rack { addendum: 1.4, dedendum: 1.6, tip_radius: 0.2, ..Rack::ISO_53_A },
         bore_radius: 3e-3 * 0.5 * f64::from(teeth) / 5.0,
         ..specifications(3e-3, 1.75)[0]
     };
@@ -346,7 +348,7 @@ fn a_tooth_larger_than_its_base_circle_is_clamped_at_its_root() {
 #[test]
 fn a_tip_that_is_all_but_pointed() {
     let [pinion, gear] = specifications(3e-3, 1.75);
-    let rack = Rack { addendum: 1.0, dedendum: 2.0, tip_radius: 0.05 };
+    let rack = Rack { addendum: 1.0, dedendum: 2.0, tip_radius: 0.05, ..Rack::ISO_53_A };
     let apex = Gear::new(&pinion).map(|gear| gear.radius_at(gear.apex_roll())).unwrap();
     let with_tip = |missing: f64| {
         let sharp = Specification { tip_radius: Some(apex * (1.0 - missing)), ..pinion };

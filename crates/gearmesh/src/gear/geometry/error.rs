@@ -2,7 +2,13 @@
 //!
 //! Must not know: where a study states the parameter. Lengths and angles arrive in SI and are shown in mm and degrees.
 
+pub mod parameter;
+pub mod shown;
+
 use std::fmt;
+
+pub use parameter::Parameter;
+pub use shown::{Degrees, Millimetres, Plain};
 
 use super::Side;
 
@@ -15,18 +21,6 @@ pub struct GeometryError {
     /// What is wrong, with its numbers.
     pub problem: Problem,
 }
-
-/// A length, shown in mm with its significant digits.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Millimetres(pub f64);
-
-/// An angle, shown in degrees.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Degrees(pub f64);
-
-/// A plain number, shown with its significant digits.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plain(pub f64);
 
 /// What makes a gear or a pair impossible, with the numbers of its message.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -59,6 +53,78 @@ pub enum Problem {
         /// ρ_fP*.
         radius: Plain,
         /// ρ_fP* at which the tip land of the rack vanishes.
+        largest: Plain,
+    },
+    /// The teeth of the cutter are pointed.
+    #[error(
+        "the cutter's teeth are pointed: their flanks meet at a radius of {apex}, its tip radius is {tip}, but must be below that"
+    )]
+    CutterPointed {
+        /// r_a0 \[m\].
+        tip: Millimetres,
+        /// Radius at which the two flanks of its tooth meet \[m\].
+        apex: Millimetres,
+    },
+    /// The round of the cutter's tip is more than a full round, or begins below its base circle.
+    #[error(
+        "the cutter's tip radius is {radius} modules, but must be 0 to {largest}, where its tips are fully round or no flank is left"
+    )]
+    CutterRoundTooLarge {
+        /// ρ_aP0*.
+        radius: Plain,
+        /// The largest ρ_aP0*.
+        largest: Plain,
+    },
+    /// The cutter's involute begins before the gear's ends.
+    #[error(
+        "a cutter of {teeth} teeth has no involute for the flank beyond a radius of {reached}, but the tip circle is at {tip}: it needs more teeth"
+    )]
+    CutterTooSmall {
+        /// z_0.
+        teeth: u32,
+        /// Where its base circle cuts \[m\].
+        reached: Millimetres,
+        /// r_a \[m\].
+        tip: Millimetres,
+    },
+    /// The tool leaves so much stock that its teeth end in a point before they reach the root.
+    #[error(
+        "the machining allowance is {allowance} modules, but must be below {largest}, where the tool's teeth end in a point before they are {dedendum} modules deep"
+    )]
+    AllowanceTooLarge {
+        /// q*.
+        allowance: Plain,
+        /// h_fP*.
+        dedendum: Plain,
+        /// q* at which the tool's tip land vanishes.
+        largest: Plain,
+    },
+    /// The protuberance cuts away the whole flank.
+    #[error(
+        "no involute is left: the protuberance of {protuberance} modules at {angle}, less a machining allowance of {allowance}, cuts the flank away up to the tip circle at {tip}"
+    )]
+    ProtuberanceTooLarge {
+        /// pr*.
+        protuberance: Plain,
+        /// q*.
+        allowance: Plain,
+        /// α_prP \[rad\].
+        angle: Degrees,
+        /// r_a \[m\].
+        tip: Millimetres,
+    },
+    /// The notch that grinding leaves does not go over into the root.
+    #[error(
+        "grinding leaves a notch {depth} deep in the root, since the allowance is larger than the protuberance; the radius of the notch is {radius} modules, but must be above {smallest} and at most {largest} to meet the root"
+    )]
+    NotchRadius {
+        /// ρ_g*.
+        radius: Plain,
+        /// t_g \[m\].
+        depth: Millimetres,
+        /// t_g*, with which the arc turns by a right angle.
+        smallest: Plain,
+        /// ρ_g* with which the arc still reaches the root curve, by bisection.
         largest: Plain,
     },
     /// The form radius is not below the tip radius: undercut has cut the involute off, or the tip circle is too small.
@@ -264,60 +330,6 @@ pub enum Reached {
     InsideBaseCircle,
 }
 
-/// What a user states about gears.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Parameter {
-    /// z.
-    Teeth,
-    /// m.
-    Module,
-    /// α.
-    PressureAngle,
-    /// x, in units of the module.
-    ProfileShift,
-    /// h_aP*.
-    RackAddendum,
-    /// h_fP*.
-    RackDedendum,
-    /// ρ_fP*.
-    RackTipRadius,
-    /// r_a.
-    TipRadius,
-    /// b.
-    FaceWidth,
-    /// Radius of the bore.
-    BoreRadius,
-    /// E.
-    YoungsModulus,
-    /// ν.
-    PoissonRatio,
-    /// a_w.
-    CentreDistance,
-    /// A_s, W_k or M_dK.
-    ToothThickness,
-}
-
-impl Parameter {
-    fn words(self) -> &'static str {
-        match self {
-            Self::Teeth => "the number of teeth",
-            Self::Module => "the module",
-            Self::PressureAngle => "the pressure angle",
-            Self::ProfileShift => "the profile shift",
-            Self::RackAddendum => "the rack's addendum",
-            Self::RackDedendum => "the rack's dedendum",
-            Self::RackTipRadius => "the rack's tip radius",
-            Self::TipRadius => "the tip radius",
-            Self::FaceWidth => "the face width",
-            Self::BoreRadius => "the bore radius",
-            Self::YoungsModulus => "Young's modulus",
-            Self::PoissonRatio => "Poisson's ratio",
-            Self::CentreDistance => "the centre distance",
-            Self::ToothThickness => "the tooth thickness",
-        }
-    }
-}
-
 /// What an error is about, of all that its user stated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Subject {
@@ -336,14 +348,22 @@ impl GeometryError {
     #[must_use]
     pub fn subject(&self) -> Subject {
         Subject::Parameter(match &self.problem {
+            Problem::OutOfRange { parameter: Parameter::TipAngle, .. } | Problem::TipBreakTooLarge { .. } => {
+                return Subject::Tip;
+            }
             Problem::OutOfRange { parameter, .. } | Problem::Differs { parameter, .. } => *parameter,
             Problem::NoTipLand { .. } => Parameter::PressureAngle,
             Problem::TipRoundTooLarge { .. } | Problem::FilletDoesNotFit { .. } => Parameter::RackTipRadius,
+            Problem::CutterPointed { .. } => Parameter::CutterProfileShift,
+            Problem::CutterRoundTooLarge { .. } => Parameter::CutterTipRadius,
+            Problem::CutterTooSmall { .. } => Parameter::CutterTeeth,
+            Problem::AllowanceTooLarge { .. } => Parameter::MachiningAllowance,
+            Problem::ProtuberanceTooLarge { .. } => Parameter::Protuberance,
+            Problem::NotchRadius { .. } => Parameter::NotchRadius,
             Problem::NoFlank { .. } | Problem::Interference { .. } => Parameter::Teeth,
             Problem::RootArcTooLarge { .. } | Problem::NothingBelowBase { .. } | Problem::CutOff { .. } => {
                 return Subject::Root;
             }
-            Problem::TipBreakTooLarge { .. } => return Subject::Tip,
             Problem::ReliefTooDeep { .. } | Problem::TipTakenOff { .. } => return Subject::Flank,
             Problem::Pointed { tip_is_given: false, .. } | Problem::ProfileShiftSum { .. } => Parameter::ProfileShift,
             Problem::Pointed { .. } | Problem::NoClearance { .. } => Parameter::TipRadius,
@@ -375,39 +395,6 @@ fn side_prefix(side: Option<Side>) -> &'static str {
         None => "",
         Some(Side::Pinion) => "pinion: ",
         Some(Side::Gear) => "gear: ",
-    }
-}
-
-/// Six significant digits, without trailing zeros.
-fn significant(value: f64) -> String {
-    if value.abs() <= 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let magnitude = libm::floor(libm::log10(value.abs()));
-    if !(-4.0..9.0).contains(&magnitude) {
-        return format!("{value:.5e}");
-    }
-    // In range by the line above.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let text = format!("{value:.*}", (5.0 - magnitude).max(0.0) as usize);
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
-}
-
-impl fmt::Display for Millimetres {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{} mm", significant(self.0 * 1e3))
-    }
-}
-
-impl fmt::Display for Degrees {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{} deg", significant(self.0.to_degrees()))
-    }
-}
-
-impl fmt::Display for Plain {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(&significant(self.0))
     }
 }
 

@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::Gear;
 use super::error::GeometryError;
-use super::outline::curve::Curve;
+use super::outline::curve::{Curve, OutlinePart};
 use super::outline::tip::Tip;
 
 /// The end of a flank.
@@ -43,10 +43,7 @@ impl FlankEnd {
         let flank = Curve::Involute { base_radius, half_base_angle };
         let (roll, top) = tip.segments(gear, &flank, form_roll)?;
         let corner = Self::corner(roll);
-        let (Some(next), Tip::Chamfer(size) | Tip::Rounding(size)) = (top.first(), tip) else { return Ok(corner) };
-        if size <= 0.0 {
-            return Ok(corner);
-        }
+        let Some(next) = top.first().filter(|segment| segment.part == OutlinePart::TipBreak) else { return Ok(corner) };
         if let Tip::Rounding(radius) = tip {
             return Ok(Self { roll, interior_angle: PI, radius });
         }

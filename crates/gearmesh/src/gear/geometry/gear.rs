@@ -8,13 +8,12 @@ use std::ops::RangeInclusive;
 
 use super::error::{Degrees, GeometryError, Millimetres, Parameter, Plain, Problem};
 use super::flank_end::FlankEnd;
+use super::generated::Generated;
 use super::involute::involute;
 use super::outline::tip::Tip;
-use super::trochoid::{self, Trochoid};
-use super::{Gear, Specification};
-
-/// Degrees to radians, for the range of the pressure angle.
-const DEGREE: f64 = std::f64::consts::PI / 180.0;
+use super::pinion_cutter::Shaping;
+use super::trochoid;
+use super::{DEGREE, Gear, Rack, Specification};
 
 /// Least bore radius over root radius: a body held at a point would turn about it without limit.
 const LEAST_BORE: f64 = 1e-3;
@@ -25,14 +24,30 @@ impl Gear {
     /// pointed teeth, a bore that reaches the root.
     pub fn new(specification: &Specification) -> Result<Self, GeometryError> {
         check_ranges(specification)?;
-        check_rack(specification)?;
+        let shaping = specification.cutter.as_ref().map(|cutter| cutter.shaping(specification)).transpose()?;
+        if shaping.is_none() {
+            check_rack(specification)?;
+        }
         let Specification { teeth, module, pressure_angle, profile_shift, rack, .. } = *specification;
         let generating_shift = specification.generating_profile_shift();
         let reference_radius = 0.5 * module * f64::from(teeth);
         let base_radius = reference_radius * libm::cos(pressure_angle);
-        let root_radius = reference_radius - module * (rack.dedendum - generating_shift);
+        let root_radius = shaping.as_ref().map_or_else(
+            || reference_radius - module * (rack.dedendum - generating_shift),
+            |shaping| shaping.centre_distance - shaping.tip_radius,
+        );
         let tip_radius =
             specification.tip_radius.unwrap_or(reference_radius + module * (rack.addendum + profile_shift));
+        if root_radius <= 0.0
+            && let Some(cutter) = specification.cutter
+        {
+            let largest = cutter.addendum + root_radius / module;
+            return Err(out_of_range(
+                Parameter::CutterAddendum,
+                &Plain(cutter.addendum),
+                format!("below {} modules, where the root circle vanishes", Plain(largest)),
+            ));
+        }
         if root_radius <= 0.0 {
             let largest = 0.5 * f64::from(teeth) + generating_shift;
             return Err(out_of_range(
@@ -59,7 +74,7 @@ impl Gear {
                 )
             });
         }
-        let (_, joint) = Trochoid::generate(specification, base_radius);
+        let Generated { joint, .. } = Generated::new(specification, base_radius, half_base_angle)?;
         let mut gear = Self {
             specification: *specification,
             reference_radius,
@@ -74,6 +89,9 @@ impl Gear {
             flank_end: FlankEnd::corner(0.0),
         };
         gear.check()?;
+        if let Some(shaping) = &shaping {
+            gear.check_generated(shaping)?;
+        }
         gear.flank_end = FlankEnd::corner(gear.tip_roll());
         Ok(gear)
     }
@@ -87,10 +105,41 @@ impl Gear {
         Ok(Self { tip, flank_end, ..self })
     }
 
+    /// Refuses a cutter whose flank begins, at its base circle, before the gear's flank ends.
+    fn check_generated(&self, shaping: &Shaping) -> Result<(), GeometryError> {
+        let [_, highest] = shaping.rolls(self.base_radius);
+        if highest < self.tip_roll() {
+            let [reached, tip] = [self.radius_at(highest), self.tip_radius].map(Millimetres);
+            let teeth = self.specification.cutter.map_or(0, |cutter| cutter.teeth);
+            return Err(Problem::CutterTooSmall { teeth, reached, tip }.into());
+        }
+        Ok(())
+    }
+
+    /// Whether a rack without protuberance would leave a flank below the tip circle.
+    fn is_cut_by_protuberance(&self) -> bool {
+        let given = self.specification;
+        let rack = Rack { protuberance: 0.0, machining_allowance: 0.0, ..given.rack };
+        given.cutter.is_none()
+            && given.rack.residual_undercut() > 0.0
+            && Generated::new(&Specification { rack, ..given }, self.base_radius, self.half_base_angle)
+                .is_ok_and(|plain| plain.joint.radius < self.tip_radius)
+    }
+
     fn check(&self) -> Result<(), GeometryError> {
         let Specification { teeth, bore_radius, tip_radius, .. } = self.specification;
         // Named for what must hold, so that a NaN fails too.
         let has_flank = self.tip_radius > self.form_radius;
+        if !has_flank && self.is_cut_by_protuberance() {
+            let rack = &self.specification.rack;
+            return Err(Problem::ProtuberanceTooLarge {
+                protuberance: Plain(rack.protuberance),
+                allowance: Plain(rack.machining_allowance),
+                angle: Degrees(rack.protuberance_angle),
+                tip: Millimetres(self.tip_radius),
+            }
+            .into());
+        }
         if !has_flank {
             return Err(Problem::NoFlank {
                 form: Millimetres(self.form_radius),
@@ -130,7 +179,7 @@ fn check_ranges(specification: &Specification) -> Result<(), GeometryError> {
     let angle: Show = |value| Degrees(value).to_string();
     let plain: Show = |value| Plain(value).to_string();
     let Specification { teeth, module, pressure_angle, profile_shift, rack, face_width, material, .. } = *specification;
-    let rows: [Row; 10] = [
+    let rows: [Row; 14] = [
         (Parameter::Teeth, teeth.into(), 4.0..=10_000.0, plain, ""),
         (Parameter::Module, module, 1e-6..=10.0, length, ""),
         (Parameter::PressureAngle, pressure_angle, DEGREE..=45.0 * DEGREE, angle, ""),
@@ -138,11 +187,23 @@ fn check_ranges(specification: &Specification) -> Result<(), GeometryError> {
         (Parameter::RackAddendum, rack.addendum, 0.1..=5.0, plain, " modules"),
         (Parameter::RackDedendum, rack.dedendum, 0.1..=5.0, plain, " modules"),
         (Parameter::RackTipRadius, rack.tip_radius, 0.0..=5.0, plain, " modules"),
+        (Parameter::Protuberance, rack.protuberance, 0.0..=1.0, plain, " modules"),
+        (Parameter::ProtuberanceAngle, rack.protuberance_angle, DEGREE..=45.0 * DEGREE, angle, ""),
+        (Parameter::MachiningAllowance, rack.machining_allowance, 0.0..=1.0, plain, " modules"),
+        (Parameter::NotchRadius, rack.notch_radius, 0.0..=5.0, plain, " modules"),
         (Parameter::FaceWidth, face_width, 1e-6..=100.0, length, ""),
         (Parameter::YoungsModulus, material.youngs_modulus, 1.0..=1e15, plain, " Pa"),
         (Parameter::PoissonRatio, material.poisson_ratio, 0.0..=0.5, plain, ""),
     ];
-    for (parameter, value, range, show, unit) in rows {
+    let of_cutter = specification.cutter.iter().flat_map(|cutter| -> [Row; 4] {
+        [
+            (Parameter::CutterTeeth, cutter.teeth.into(), 4.0..=100_000.0, plain, ""),
+            (Parameter::CutterProfileShift, cutter.profile_shift, -5.0..=5.0, plain, " modules"),
+            (Parameter::CutterAddendum, cutter.addendum, 0.1..=5.0, plain, " modules"),
+            (Parameter::CutterTipRadius, cutter.tip_radius, 0.0..=5.0, plain, " modules"),
+        ]
+    });
+    for (parameter, value, range, show, unit) in rows.into_iter().chain(of_cutter) {
         if !range.contains(&value) {
             let range = format!("{} to {}{unit}", show(*range.start()), show(*range.end()));
             return Err(out_of_range(parameter, &(show(value) + unit), range));
@@ -153,16 +214,30 @@ fn check_ranges(specification: &Specification) -> Result<(), GeometryError> {
 
 fn check_rack(specification: &Specification) -> Result<(), GeometryError> {
     let Specification { pressure_angle, rack, .. } = *specification;
-    let largest = trochoid::full_round(specification);
-    if largest <= 0.0 {
+    let plain = Rack { protuberance: 0.0, machining_allowance: 0.0, ..rack };
+    if trochoid::full_round(&Specification { rack: plain, ..*specification }) <= 0.0 {
         let largest = Degrees(libm::atan(FRAC_PI_4 / rack.dedendum));
         return Err(
             Problem::NoTipLand { dedendum: Plain(rack.dedendum), angle: Degrees(pressure_angle), largest }.into()
         );
     }
+    let largest = trochoid::full_round(specification);
+    if largest <= 0.0 {
+        let (sine, cosine) = libm::sincos(pressure_angle);
+        let largest = rack.protuberance + FRAC_PI_4 * cosine - rack.dedendum * sine;
+        let [allowance, dedendum, largest] = [rack.machining_allowance, rack.dedendum, largest].map(Plain);
+        return Err(Problem::AllowanceTooLarge { allowance, dedendum, largest }.into());
+    }
     // Full round is allowed, so it must be reachable by a decimal number.
     if rack.tip_radius > largest * (1.0 + 1e-9) {
         return Err(Problem::TipRoundTooLarge { radius: Plain(rack.tip_radius), largest: Plain(largest) }.into());
+    }
+    if rack.protuberance > 0.0 && rack.protuberance_angle >= pressure_angle {
+        return Err(out_of_range(
+            Parameter::ProtuberanceAngle,
+            &Degrees(rack.protuberance_angle),
+            format!("below the pressure angle, {}", Degrees(pressure_angle)),
+        ));
     }
     Ok(())
 }

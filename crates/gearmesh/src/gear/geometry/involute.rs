@@ -100,12 +100,17 @@ impl Gear {
     /// The flank point at a roll angle, with dy/du.
     #[must_use]
     pub fn flank(&self, roll: f64) -> Section {
-        let (sine, cosine) = libm::sincos(self.load_angle(roll));
-        Section {
-            half_thickness: self.base_radius * (roll * cosine - sine),
-            height: self.base_radius * (cosine + roll * sine),
-            height_rate: self.base_radius * roll * cosine,
-        }
+        involute_at(self.base_radius, self.half_base_angle, roll)
+    }
+}
+
+/// The point of an involute of a tooth's right half at a roll angle, with dy/du.
+pub(super) fn involute_at(base_radius: f64, half_base_angle: f64, roll: f64) -> Section {
+    let (sine, cosine) = libm::sincos(roll - half_base_angle);
+    Section {
+        half_thickness: base_radius * (roll * cosine - sine),
+        height: base_radius * (cosine + roll * sine),
+        height_rate: base_radius * roll * cosine,
     }
 }
 

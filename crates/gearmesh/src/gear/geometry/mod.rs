@@ -5,10 +5,12 @@
 pub mod error;
 pub mod flank_end;
 pub mod gear;
+pub mod generated;
 pub mod inspection;
 pub mod involute;
 pub mod outline;
 pub mod pair;
+pub mod pinion_cutter;
 pub mod root;
 pub mod sliding;
 pub mod thickness;
@@ -19,12 +21,19 @@ pub mod validity;
 #[cfg(test)]
 mod tests;
 
+use std::f64::consts::FRAC_PI_4;
+
 use super::material::Material;
 use declare::Declared;
+use declare::units::ANGLE;
 use flank_end::FlankEnd;
 use outline::tip::Tip;
+use pinion_cutter::PinionCutter;
 
-/// Basic rack (ISO 53), in units of the module.
+/// The rack that cuts a gear, in units of the module, where it stands against the finished tooth (ISO 53, ISO 6336-3).
+///
+/// Its dedendum counts from the line on which the finished tooth is half a pitch thick, also where its flanks leave stock: one
+/// with the tool addendum h_aP0 of its own has h_fP = h_aP0 − q/sin α.
 #[derive(Clone, Copy, Debug, PartialEq, Declared)]
 pub struct Rack {
     /// Addendum coefficient h_aP*.
@@ -36,11 +45,41 @@ pub struct Rack {
     /// Tip radius coefficient ρ_fP*.
     #[declared(minimum = 0.0, maximum = 2.0, default = "0.38")]
     pub tip_radius: f64,
+    /// Protuberance pr*: how far the round of the tip stands out of the straight flank, normal to it.
+    #[declared(minimum = 0.0, maximum = 0.5, default = "0.0")]
+    pub protuberance: f64,
+    /// Angle α_prP of the straight side of the protuberance, from the round to the flank; below the pressure angle.
+    #[declared(minimum = DEGREE, maximum = FRAC_PI_4, dimension = ANGLE, default = "10 deg")]
+    pub protuberance_angle: f64,
+    /// Machining allowance q*: what the flanks of the tool leave on each flank of the tooth to be ground off.
+    #[declared(minimum = 0.0, maximum = 0.5, default = "0.0")]
+    pub machining_allowance: f64,
+    /// Radius ρ_g* of the notch that grinding leaves in the root, where the allowance is larger than the protuberance.
+    #[declared(minimum = 0.0, maximum = 2.0, default = "0.0")]
+    pub notch_radius: f64,
 }
+
+/// Degrees to radians.
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 impl Rack {
     /// Basic rack A of ISO 53.
-    pub const ISO_53_A: Self = Self { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 };
+    pub const ISO_53_A: Self = Self {
+        addendum: 1.0,
+        dedendum: 1.25,
+        tip_radius: 0.38,
+        protuberance: 0.0,
+        protuberance_angle: 10.0 * DEGREE,
+        machining_allowance: 0.0,
+        notch_radius: 0.0,
+    };
+
+    /// s_pr* = pr* − q* \[modules\]: how far the round of the tip reaches beyond the finished flank, normal to it; below 0 where it
+    /// stays short of it, and grinding leaves a notch.
+    #[must_use]
+    pub fn residual_undercut(&self) -> f64 {
+        self.protuberance - self.machining_allowance
+    }
 }
 
 /// What defines one gear.
@@ -57,8 +96,10 @@ pub struct Specification {
     /// A_s \[m\]: by how much its teeth are thicker on the reference circle than x says; below 0 for backlash. Tip circle and
     /// centre distance stay those of x.
     pub thickness_allowance: f64,
-    /// Basic rack that generates its teeth.
+    /// Basic rack that generates its teeth; of one that is shaped it says the addendum.
     pub rack: Rack,
+    /// Pinion-type cutter that shapes its teeth, where no rack does.
+    pub cutter: Option<PinionCutter>,
     /// r_a \[m\] when it is not m(z/2 + h_aP* + x).
     pub tip_radius: Option<f64>,
     /// b \[m\].
@@ -67,6 +108,24 @@ pub struct Specification {
     pub bore_radius: f64,
     /// E and ν of tooth and body.
     pub material: Material,
+}
+
+impl Specification {
+    /// ρ of the tip of its tool \[modules\].
+    #[must_use]
+    pub fn tool_tip_radius(&self) -> f64 {
+        self.cutter.map_or(self.rack.tip_radius, |cutter| cutter.tip_radius)
+    }
+
+    /// The same gear of a tool whose tip has another radius \[modules\].
+    #[must_use]
+    pub fn with_tool_tip_radius(mut self, tip_radius: f64) -> Self {
+        match &mut self.cutter {
+            Some(cutter) => cutter.tip_radius = tip_radius,
+            None => self.rack.tip_radius = tip_radius,
+        }
+        self
+    }
 }
 
 /// Which of the two gears.
@@ -146,6 +205,17 @@ pub struct GearPair {
     pub base_pitch: f64,
     /// ε_α.
     pub contact_ratio: f64,
+}
+
+impl Gear {
+    /// h_fP \[modules\]: of its rack or, of one that is shaped, as deep as its cutter goes at x_E.
+    #[must_use]
+    pub fn dedendum(&self) -> f64 {
+        let Specification { module, rack, cutter, .. } = self.specification;
+        cutter.map_or(rack.dedendum, |_| {
+            (self.reference_radius - self.root_radius) / module + self.specification.generating_profile_shift()
+        })
+    }
 }
 
 impl GearPair {

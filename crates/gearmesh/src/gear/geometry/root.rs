@@ -1,6 +1,6 @@
 //! The shapes a tooth's root may be given, as sections from the clamped end up to the involute.
 //!
-//! - `Trochoid`: what the rack cuts; clamped where it touches the root circle.
+//! - `Trochoid`: what the tool leaves; clamped where it touches the root circle.
 //! - `CircularFillet`: an arc of the rack's tip radius ρ_fP, tangent to the root circle and to the flank, the flank
 //!   being the involute and, below the base circle, the radial line at ψ_b; clamped at the root circle.
 //! - `BaseCircle`: no root at all; the involute is clamped at the base circle, or at the root circle where that is larger
@@ -12,7 +12,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::Gear;
 use super::error::{GeometryError, Millimetres, Problem};
-use super::involute::Section;
+use super::generated::Generated;
+use super::involute::{Section, involute_at};
 use super::trochoid::Trochoid;
 use crate::numeric::crossing;
 use declare::Words;
@@ -54,7 +55,7 @@ impl Root {
 pub enum Piece {
     /// Over q = asinh(cot γ).
     Trochoid(Trochoid),
-    /// Over the angle about its centre, 0 where it touches the root circle.
+    /// Over the angle about its centre, 0 towards the gear's centre.
     Arc {
         /// Distance of its centre from the gear's \[m\].
         centre_radius: f64,
@@ -62,8 +63,21 @@ pub enum Piece {
         centre_angle: f64,
         /// Its radius \[m\].
         radius: f64,
+        /// The parameter at its lower end \[rad\]; 0 where it touches the root circle.
+        start: f64,
         /// The parameter at its upper end \[rad\].
         extent: f64,
+    },
+    /// Over the roll angle of an involute that is not the flank's.
+    Involute {
+        /// Its base radius \[m\].
+        base_radius: f64,
+        /// Half the angle between it and its mirror image at its base circle \[rad\].
+        half_base_angle: f64,
+        /// Roll angle at its lower end.
+        from: f64,
+        /// Roll angle at its upper end.
+        to: f64,
     },
     /// Over the radius.
     Radial {
@@ -82,7 +96,8 @@ impl Piece {
     pub fn range(&self) -> (f64, f64) {
         match self {
             Self::Trochoid(curve) => (0.0, curve.joint_parameter()),
-            Self::Arc { extent, .. } => (0.0, *extent),
+            Self::Arc { start, extent, .. } => (*start, *extent),
+            Self::Involute { from, to, .. } => (*from, *to),
             Self::Radial { lower, upper, .. } => (*lower, *upper),
         }
     }
@@ -101,6 +116,7 @@ impl Piece {
                     height_rate: radius * arc_sine,
                 }
             }
+            Self::Involute { base_radius, half_base_angle, .. } => involute_at(base_radius, half_base_angle, parameter),
             Self::Radial { angle, .. } => {
                 let (sine, cosine) = libm::sincos(angle);
                 Section { half_thickness: parameter * sine, height: parameter * cosine, height_rate: cosine }
@@ -113,15 +129,15 @@ impl Gear {
     /// The root of this gear's teeth in a certain shape.
     ///
     /// # Errors
-    /// When circular fillets of neighbouring teeth would overlap.
+    /// When circular fillets of neighbouring teeth would overlap; a generated root of a gear that could be made exists.
     pub fn root(&self, shape: RootShape) -> Result<Root, GeometryError> {
         match shape {
             RootShape::Trochoid => {
-                let curve = self.trochoid();
+                let Generated { trochoid, beyond, joint, .. } = self.generated()?;
                 Ok(Root {
-                    half_angle: curve.root_half_angle(),
-                    form_roll: self.form_roll,
-                    pieces: vec![Piece::Trochoid(curve)],
+                    half_angle: trochoid.root_half_angle(),
+                    form_roll: joint.roll,
+                    pieces: std::iter::once(Piece::Trochoid(trochoid)).chain(beyond).collect(),
                 })
             }
             RootShape::CircularFillet => self.circular_fillet(),
@@ -133,7 +149,7 @@ impl Gear {
     }
 
     fn circular_fillet(&self) -> Result<Root, GeometryError> {
-        let radius = self.specification.rack.tip_radius * self.specification.module;
+        let radius = self.specification.tool_tip_radius() * self.specification.module;
         let root = self.unbounded_fillet(radius);
         let overlap = self.overlap(&root);
         if overlap > 1e-9 * self.root_radius {
@@ -184,7 +200,7 @@ impl Gear {
         };
         let extent = FRAC_PI_2 + self.half_base_angle - form_roll - centre_angle;
         if radius > 0.0 {
-            pieces.push(Piece::Arc { centre_radius, centre_angle, radius, extent });
+            pieces.push(Piece::Arc { centre_radius, centre_angle, radius, start: 0.0, extent });
         }
         if !on_involute {
             let lower = ((centre_radius - radius) * (centre_radius + radius)).sqrt();

@@ -4,8 +4,11 @@ mod cutter;
 mod meshing;
 mod outline;
 mod passing;
+mod protuberance;
 mod refusals;
 mod section;
+mod semi_topping;
+mod shaping;
 mod usable;
 
 use std::f64::consts::PI;
@@ -27,7 +30,8 @@ fn specification(teeth: u32, module_mm: f64, profile_shift: f64) -> Specificatio
         pressure_angle: 20.0 * DEGREE,
         profile_shift,
         thickness_allowance: 0.0,
-        rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 },
+        cutter: None,
+        rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38, ..Rack::ISO_53_A },
         tip_radius: None,
         face_width: 0.02,
         bore_radius: 1e-3 * module_mm,
@@ -64,7 +68,7 @@ fn assert_near(found: f64, expected: f64, tolerance: f64, what: &str) {
 /// Tier: published; ISO 53:1998, table 2, rack A; ISO 6336-1 and -2: E 206 000 N/mm² and ν 0.3 of steel.
 #[test]
 fn rack_and_steel_are_the_standards() {
-    assert_eq!(Rack::ISO_53_A, Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 });
+    assert_eq!(Rack::ISO_53_A, Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38, ..Rack::ISO_53_A });
     assert_eq!(Material::STEEL, Material { youngs_modulus: 206e9, poisson_ratio: 0.3, density: 7830.0 });
 }
 
@@ -210,7 +214,7 @@ fn pairs_that_cannot_run_are_refused() {
     );
 
     let short = |teeth| Specification {
-        rack: Rack { addendum: 0.5, dedendum: 1.25, tip_radius: 0.38 },
+        rack: Rack { addendum: 0.5, dedendum: 1.25, tip_radius: 0.38, ..Rack::ISO_53_A },
         ..specification(teeth, 3.0, 0.0)
     };
     let error = GearPair::new(short(19), short(48), None).unwrap_err();
@@ -246,7 +250,7 @@ fn a_clearance_of_exactly_nothing_is_kept() {
         for (pinion, gear) in [(30, 41), (37, 53), (61, 97), (33, 400)] {
             for (depth, shift) in [(1.0, 0.0), (1.1, 0.1), (1.157, 0.3), (1.07, -0.05)] {
                 let cut = |teeth, shift, longer: f64| Specification {
-                    rack: Rack { addendum: depth, dedendum: depth, tip_radius: 0.0 },
+                    rack: Rack { addendum: depth, dedendum: depth, tip_radius: 0.0, ..Rack::ISO_53_A },
                     tip_radius: Some(module * 1e-3 * (0.5 * f64::from(teeth) + depth + shift) + longer),
                     ..specification(teeth, module, shift)
                 };
@@ -285,7 +289,7 @@ fn the_path_of_contact() {
     }
 
     let high = |teeth| Specification {
-        rack: Rack { addendum: 1.4, dedendum: 1.6, tip_radius: 0.2 },
+        rack: Rack { addendum: 1.4, dedendum: 1.6, tip_radius: 0.2, ..Rack::ISO_53_A },
         ..specification(teeth, 3.0, 0.0)
     };
     let pair = GearPair::new(high(50), high(60), None).unwrap();
@@ -319,7 +323,7 @@ proptest! {
     ) {
         let mut specification = specification(teeth, 3.0, shift);
         specification.pressure_angle = angle * DEGREE;
-        specification.rack = Rack { addendum: 0.5, dedendum, tip_radius: 0.0 };
+        specification.rack = Rack { addendum: 0.5, dedendum, tip_radius: 0.0, ..Rack::ISO_53_A };
         specification.rack.tip_radius = round * super::trochoid::full_round(&specification).max(0.0);
         let Ok(gear) = Gear::new(&specification) else { return Err(TestCaseError::reject("no such gear")) };
         for shape in [RootShape::CircularFillet, RootShape::BaseCircle] {
@@ -407,7 +411,7 @@ fn the_circular_fillet_is_tangent() {
         assert_eq!(root.pieces.len(), if teeth == 19 { 2 } else { 1 });
     }
     // Four teeth are too near for this arc.
-    let rack = Rack { addendum: 0.5, dedendum: 0.9, tip_radius: 0.65 };
+    let rack = Rack { addendum: 0.5, dedendum: 0.9, tip_radius: 0.65, ..Rack::ISO_53_A };
     let crowded = Gear::new(&Specification { rack, bore_radius: 1e-3, ..specification(4, 3.0, -0.2) }).unwrap();
     let error = crowded.root(RootShape::CircularFillet).unwrap_err();
     assert_eq!(error.subject(), Subject::Parameter(Parameter::RackTipRadius));

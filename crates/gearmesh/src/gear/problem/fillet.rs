@@ -16,7 +16,7 @@ use crate::gear::geometry::error::GeometryError;
 use crate::gear::geometry::outline::roots::Toe;
 use crate::gear::geometry::root::{Root, RootShape};
 use crate::gear::geometry::tip_path::{Corner, TipPath};
-use crate::gear::geometry::{Gear, GearPair, Rack, Side, Specification, trochoid};
+use crate::gear::geometry::{Gear, GearPair, Side, trochoid};
 use crate::gear::material::Plane;
 use declare::units::{Dimension, LENGTH, RATIO};
 use declare::{Declared, Words};
@@ -133,8 +133,7 @@ impl Fillet {
             return Ok((self.gear.clone(), self.gear.fillet(radius)?));
         }
         let given = self.gear.specification;
-        let rack = Rack { tip_radius: radius / given.module, ..given.rack };
-        let gear = Gear::new(&Specification { rack, ..given })?.with_tip(self.gear.tip)?;
+        let gear = Gear::new(&given.with_tool_tip_radius(radius / given.module))?.with_tip(self.gear.tip)?;
         let root = gear.root(RootShape::Trochoid)?;
         Ok((gear, root))
     }
@@ -185,6 +184,7 @@ impl Problem for Fillet {
 mod tests {
     use super::*;
     use crate::gear::fixtures::pair_with_contact_ratio;
+    use crate::gear::geometry::{Rack, Specification};
     use crate::gear::material::Material;
 
     fn pair(shift: f64) -> GearPair {
@@ -194,7 +194,8 @@ mod tests {
             pressure_angle: 20_f64.to_radians(),
             profile_shift,
             thickness_allowance: 0.0,
-            rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.25 },
+            cutter: None,
+            rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.25, ..Rack::ISO_53_A },
             tip_radius: None,
             face_width: 0.02,
             bore_radius: 0.012,

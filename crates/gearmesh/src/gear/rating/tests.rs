@@ -70,7 +70,7 @@ fn without_load_factors() -> Conditions {
 
 /// A gear of the standard rack with a fillet of 0.38.
 fn gear(teeth: u32, module: f64, profile_shift: f64, face_width: f64, bore_radius: f64) -> Specification {
-    let rack = Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 };
+    let rack = Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38, ..Rack::ISO_53_A };
     Specification { profile_shift, rack, face_width, bore_radius, ..standard(teeth, module, 2.0) }
 }
 

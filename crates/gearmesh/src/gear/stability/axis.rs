@@ -212,6 +212,7 @@ impl Point {
                 module: self.module,
                 pressure_angle: self.pressure_angle,
                 profile_shift: self.shift[side],
+                cutter: None,
                 thickness_allowance: self.thickness_allowance[side] * self.module,
                 rack,
                 tip_radius: (self.longer[side] != 0.0).then_some(tip),

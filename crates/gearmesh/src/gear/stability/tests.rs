@@ -34,7 +34,13 @@ fn gear(teeth: u32, face_width: f64) -> Specification {
         pressure_angle: 20.0 * PI / 180.0,
         profile_shift: 0.0,
         thickness_allowance: 0.0,
-        rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.25 / (1.0 - libm::sin(20.0 * PI / 180.0)) },
+        cutter: None,
+        rack: Rack {
+            addendum: 1.0,
+            dedendum: 1.25,
+            tip_radius: 0.25 / (1.0 - libm::sin(20.0 * PI / 180.0)),
+            ..Rack::ISO_53_A
+        },
         tip_radius: None,
         face_width,
         bore_radius: root / 1.75,

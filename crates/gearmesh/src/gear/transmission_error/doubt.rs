@@ -262,7 +262,7 @@ impl MeshCycle {
         let Some(tips) = self.tips(s) else { return 0.0 };
         let of = |(side, corner): (Side, &Corner)| {
             let gear = self.pair.side(side);
-            let Tip::Chamfer(size) = gear.tip else { return 0.0 };
+            let size = if matches!(gear.tip, Tip::Rounding(_)) { 0.0 } else { gear.tip.size(gear) };
             if size <= 0.0 || corner.distance >= half_width {
                 return 0.0;
             }

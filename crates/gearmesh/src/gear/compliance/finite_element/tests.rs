@@ -304,7 +304,7 @@ fn gears_that_are_alike_are_meshed_once() {
 #[test]
 fn a_gear_with_nothing_below_its_contact_is_refused() {
     let stub = |ring: f64| Specification {
-        rack: Rack { addendum: 0.1, dedendum: 0.12, tip_radius: 0.05 },
+        rack: Rack { addendum: 0.1, dedendum: 0.12, tip_radius: 0.05, ..Rack::ISO_53_A },
         bore_radius: 3e-3 * (0.5 * 60.0 - 0.12 - ring),
         ..standard(60, 3e-3, 1.4)
     };

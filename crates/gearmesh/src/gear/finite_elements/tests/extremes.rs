@@ -56,7 +56,7 @@ fn sharp_roots_and_bores_beyond_the_load_line_are_refused() {
     let gear = Gear::new(&standard(43, 1.4)).unwrap();
     let root = gear.root(RootShape::BaseCircle).unwrap();
     assert_eq!(model(&gear, &root, 8).err(), Some(MeshError::SharpRoot));
-    let rack = Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.0 };
+    let rack = Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.0, ..Rack::ISO_53_A };
     let sharp = Gear::new(&Specification { rack, ..standard(17, 1.4) }).unwrap();
     assert_eq!(model(&sharp, &sharp.root(RootShape::CircularFillet).unwrap(), 8).err(), Some(MeshError::SharpRoot));
 

@@ -13,6 +13,7 @@ fn specification(teeth: u32, module: f64, profile_shift: f64, rack: Rack) -> Spe
         pressure_angle: 20_f64.to_radians(),
         profile_shift,
         thickness_allowance: 0.0,
+        cutter: None,
         rack,
         tip_radius: None,
         face_width: 10.0 * module,
@@ -33,7 +34,7 @@ fn thinner(of: &Specification, allowance: f64) -> Gear {
 /// 1.25/0.20/1.00, allowances −0.06 and −0.03 mm, D_M 1.7 mm), to all digits that it prints, in mm.
 #[test]
 fn a_printout_of_another_program() {
-    let rack = Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.2 };
+    let rack = Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.2, ..Rack::ISO_53_A };
     let nominal = specification(30, 1e-3, 0.0, rack);
     // A_s, x_E, d_f, d_Ff, s, s_a, M_rK, M_dK, d_M
     let printed = [

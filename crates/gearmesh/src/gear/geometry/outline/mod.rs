@@ -105,12 +105,16 @@ impl Toe {
             let (from, to) = piece.range();
             match *piece {
                 Piece::Trochoid(curve) => Segment { part: OutlinePart::Root, curve: Curve::Trochoid(curve), from, to },
-                Piece::Arc { centre_radius, centre_angle, radius, extent } => {
+                Piece::Arc { centre_radius, centre_angle, radius, start, extent } => {
                     let (sine, cosine) = libm::sincos(centre_angle);
                     let curve = Curve::Arc { centre: [centre_radius * sine, centre_radius * cosine], radius };
-                    // From its lowest point, which is towards the gear's centre, clockwise.
-                    let from = 1.5 * PI - centre_angle;
-                    Segment { part: OutlinePart::Root, curve, from, to: from - extent }
+                    // From the point towards the gear's centre, clockwise.
+                    let lowest = 1.5 * PI - centre_angle;
+                    Segment { part: OutlinePart::Root, curve, from: lowest - start, to: lowest - extent }
+                }
+                Piece::Involute { base_radius, half_base_angle, .. } => {
+                    let curve = Curve::Involute { base_radius, half_base_angle };
+                    Segment { part: OutlinePart::Root, curve, from, to }
                 }
                 Piece::Radial { angle, lower, upper } => {
                     let (sine, cosine) = libm::sincos(angle);

@@ -1,16 +1,19 @@
 //! The tip of a tooth: an arc of the tip circle, with its corner as it is, chamfered or rounded.
 //!
 //! A chamfer begins on the flank its size below the tip circle and ends on the tip circle its size from the corner. A
-//! rounding is an arc tangent to the flank and, from inside, to the tip circle. Must not know: the root.
+//! rounding is an arc tangent to the flank and, from inside, to the tip circle. A semi-topping tool chamfers the tip by a ramp at the
+//! root of its teeth, in the angle α_KP: a straight side that generates an involute with the base circle r cos α_KP, which crosses the
+//! flank. Must not know: the root.
 
 use std::fmt::Debug;
 
 use super::curve::{Curve, OutlinePart, Segment};
 use crate::gear::geometry::Gear;
-use crate::gear::geometry::error::{GeometryError, Millimetres, Problem};
+use crate::gear::geometry::error::{Degrees, GeometryError, Millimetres, Parameter, Problem};
+use crate::gear::geometry::involute::involute;
 use crate::numeric::crossing;
 use declare::declared::Registrable;
-use declare::units::LENGTH;
+use declare::units::{ANGLE, LENGTH};
 use declare::{Declared, registry};
 
 /// What becomes of the corner.
@@ -22,6 +25,13 @@ pub enum Tip {
     Chamfer(f64),
     /// Its radius \[m\].
     Rounding(f64),
+    /// What the ramp of a semi-topping tool leaves.
+    SemiTopping {
+        /// α_KP \[rad\].
+        angle: f64,
+        /// h_K: how far below the addendum line of the rack the ramp begins \[m\].
+        height: f64,
+    },
 }
 
 /// The flank ends in a corner on the tip circle.
@@ -45,6 +55,18 @@ pub struct Rounding {
     /// Radius of the arc.
     #[declared(dimension = LENGTH, minimum = 0.0, maximum = 1.0, example = "0.2 mm")]
     pub radius: f64,
+}
+
+/// The chamfer that a semi-topping tool generates with its flank.
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "semi_topping")]
+pub struct SemiTopping {
+    /// Angle α_KP of the tool's ramp; above the pressure angle.
+    #[declared(dimension = ANGLE, minimum = 0.08, maximum = 1.4, default = "45 deg")]
+    pub angle: f64,
+    /// How far below the addendum line of the rack, m h_aP*, the ramp begins.
+    #[declared(dimension = LENGTH, minimum = 0.0, maximum = 1.0, example = "0.3 mm")]
+    pub height: f64,
 }
 
 /// What a study states of a tip.
@@ -71,9 +93,25 @@ impl Stated for Rounding {
     }
 }
 
-registry!(TIPS: Stated = Land, Chamfer, Rounding);
+impl Stated for SemiTopping {
+    fn tip(&self) -> Tip {
+        Tip::SemiTopping { angle: self.angle, height: self.height }
+    }
+}
+
+registry!(TIPS: Stated = Land, Chamfer, Rounding, SemiTopping);
 
 impl Tip {
+    /// How far below the tip circle the flank of a gear with this tip ends \[m\]; the radius of a rounding.
+    #[must_use]
+    pub fn size(self, gear: &Gear) -> f64 {
+        match self {
+            Self::Land => 0.0,
+            Self::Chamfer(size) | Self::Rounding(size) => size,
+            Self::SemiTopping { .. } => gear.tip_radius - gear.radius_at(gear.flank_end.roll),
+        }
+    }
+
     /// Where the flank ends, and what lies between it and the tooth's centreline.
     ///
     /// # Errors
@@ -89,9 +127,14 @@ impl Tip {
             Self::Land => return top.land(),
             Self::Chamfer(size) | Self::Rounding(size) if size <= 0.0 => return top.land(),
             Self::Chamfer(size) | Self::Rounding(size) => size,
+            Self::SemiTopping { angle, height } => {
+                top.check_angle(angle)?;
+                height
+            }
         };
         let cut = |size: f64| match self {
             Self::Rounding(_) => top.rounding(size),
+            Self::SemiTopping { angle, .. } => top.ramp(angle, size),
             _ => top.chamfer(size),
         };
         cut(size).ok_or_else(|| {
@@ -165,6 +208,46 @@ impl Top<'_> {
         }
         let land = self.on_tip(angle);
         Some((end, vec![Segment::straight(OutlinePart::TipBreak, self.flank.point(end), land.start()), land]))
+    }
+
+    fn check_angle(&self, angle: f64) -> Result<(), GeometryError> {
+        let flat = self.gear.specification.pressure_angle;
+        if angle <= flat {
+            return Err(Problem::OutOfRange {
+                parameter: Parameter::TipAngle,
+                found: Degrees(angle).to_string(),
+                range: format!("above the pressure angle, {}", Degrees(flat)),
+            }
+            .into());
+        }
+        Ok(())
+    }
+
+    /// What a ramp leaves that begins a height below the addendum line; the whole land where that is beyond the tip.
+    fn ramp(&self, angle: f64, height: f64) -> Option<(f64, Vec<Segment>)> {
+        let specification = &self.gear.specification;
+        let (tip, reference) = (self.gear.tip_radius, self.gear.reference_radius);
+        // Where it begins above the rack's pitch line, and half the thickness that it leaves on that line.
+        let begin =
+            specification.module * (specification.rack.addendum + specification.generating_profile_shift()) - height;
+        let slopes = libm::tan(angle) - libm::tan(specification.pressure_angle);
+        let half = reference * self.gear.half_angle(reference) + begin * slopes;
+        let (base_radius, half_base_angle) = (reference * libm::cos(angle), half / reference + involute(angle));
+        let roll_at = |radius: f64| ((radius - base_radius) * (radius + base_radius)).max(0.0).sqrt() / base_radius;
+        let angle_at = |roll: f64| half_base_angle - (roll - libm::atan(roll));
+        let excess = |roll: f64| {
+            let point = self.flank.point(roll);
+            angle_at(roll_at(radius(point))) - half_angle(point)
+        };
+        let (last, corner) = self.corner()?;
+        if excess(last) >= 0.0 {
+            return Some((last, vec![self.on_tip(corner)]));
+        }
+        let end = crossing::bracketed(self.form_roll, last, excess)?;
+        let (from, to) = (roll_at(radius(self.flank.point(end))), roll_at(tip));
+        let land = angle_at(to);
+        let curve = Curve::Involute { base_radius, half_base_angle };
+        (land >= 0.0).then(|| (end, vec![Segment { part: OutlinePart::TipBreak, curve, from, to }, self.on_tip(land)]))
     }
 
     fn rounding(&self, round: f64) -> Option<(f64, Vec<Segment>)> {

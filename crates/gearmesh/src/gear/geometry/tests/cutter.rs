@@ -11,11 +11,18 @@ fn distance_to_rack_tooth(specification: &Specification, x: f64, y: f64) -> f64 
     let rack = &specification.rack;
     let (sine, cosine) = specification.pressure_angle.sin_cos();
     let round = rack.tip_radius * module;
-    let reference = -specification.profile_shift * module;
     // The tooth without its outermost layer of thickness ρ is bounded by straight lines.
     let depth = rack.dedendum * module - round;
     let half_land = module * PI / 4.0 - depth * sine / cosine - round / cosine;
-    let (x, y) = (x.abs(), y - reference);
+    let reference = -specification.profile_shift * module;
+    distance_to_trapezoid([half_land, depth], specification.pressure_angle, round, [x, y - reference])
+}
+
+/// Distance from a trapezoid without upper end that is inflated by a round: half the width and the depth of its land, the angle of
+/// its sides.
+pub(super) fn distance_to_trapezoid([half_land, depth]: [f64; 2], angle: f64, round: f64, [x, y]: [f64; 2]) -> f64 {
+    let (sine, cosine) = angle.sin_cos();
+    let x = x.abs();
     let beside = (x - half_land) * cosine + (y - depth) * sine;
     let along = -(x - half_land) * sine + (y - depth) * cosine;
     let below = y - depth;
@@ -33,6 +40,11 @@ fn distance_to_rack_tooth(specification: &Specification, x: f64, y: f64) -> f64 
 
 /// Least distance of a point of the tooth (x, y) to the rack over the whole roll.
 pub(super) fn distance_to_swept_rack(gear: &Gear, x: f64, y: f64) -> f64 {
+    distance_to_swept(gear, x, y, |x, y| distance_to_rack_tooth(&gear.specification, x, y))
+}
+
+/// The same to a rack with other teeth, by the distance of a point from one of them.
+pub(super) fn distance_to_swept(gear: &Gear, x: f64, y: f64, tooth: impl Fn(f64, f64) -> f64) -> f64 {
     let specification = &gear.specification;
     let pitch = PI * specification.module;
     let at = |roll: f64| {
@@ -41,7 +53,7 @@ pub(super) fn distance_to_swept_rack(gear: &Gear, x: f64, y: f64) -> f64 {
         let (sine, cosine) = roll.sin_cos();
         let across = x * cosine - y * sine + gear.reference_radius * roll - 0.5 * pitch;
         let depth = gear.reference_radius - (x * sine + y * cosine);
-        distance_to_rack_tooth(specification, across - (across / pitch).round() * pitch, depth)
+        tooth(across - (across / pitch).round() * pitch, depth)
     };
     // Contact is within cot α times the depth of the rack's tooth from the pitch point.
     let reach = 12.0 * specification.module / gear.reference_radius;

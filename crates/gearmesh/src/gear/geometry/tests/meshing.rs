@@ -73,7 +73,7 @@ fn pairs_touch_on_the_path_of_contact_and_nowhere_overlap() {
     {
         let of = |teeth, shift| Specification {
             pressure_angle: angle * DEGREE,
-            rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.3 },
+            rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.3, ..Rack::ISO_53_A },
             ..specification(teeth, 3.0, shift)
         };
         let pair = GearPair::new(of(z1, x1), of(z2, x2), None).unwrap();

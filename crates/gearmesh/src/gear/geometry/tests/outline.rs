@@ -80,7 +80,7 @@ proptest! {
     ) {
         let mut specification = specification(teeth, 1.0, shift);
         specification.pressure_angle = angle * DEGREE;
-        specification.rack = Rack { addendum: 0.7, dedendum, tip_radius: 0.0 };
+        specification.rack = Rack { addendum: 0.7, dedendum, tip_radius: 0.0, ..Rack::ISO_53_A };
         let largest = crate::gear::geometry::trochoid::full_round(&specification).max(0.0);
         specification.rack.tip_radius = largest * match (sharp, full) { (true, _) => 0.0, (_, true) => 1.0, _ => round };
         specification.bore_radius = 1e-4;
@@ -123,7 +123,7 @@ proptest! {
     ) {
         let mut specification = specification(teeth, module, shift);
         specification.pressure_angle = angle * DEGREE;
-        specification.rack = Rack { addendum: 0.9, dedendum, tip_radius: 0.2 };
+        specification.rack = Rack { addendum: 0.9, dedendum, tip_radius: 0.2, ..Rack::ISO_53_A };
         let Ok(gear) = Gear::new(&specification) else { return Err(TestCaseError::reject("no such gear")) };
         let size = size * gear.specification.module;
         let tip = [Tip::Land, Tip::Chamfer(size), Tip::Rounding(size)][usize::from(tip)];
@@ -307,7 +307,7 @@ fn the_article_s_arc_is_the_one_it_prints() {
     );
     // With 23 teeth and a deeper rack the arc ends above the root circle: a step.
     let mut deep = specification(23, 0.5, 0.0);
-    deep.rack = Rack { addendum: 1.0, dedendum: 1.5, tip_radius: 0.3 };
+    deep.rack = Rack { addendum: 1.0, dedendum: 1.5, tip_radius: 0.3, ..Rack::ISO_53_A };
     let outline = shaped(&Gear::new(&deep).unwrap(), "arc").unwrap();
     let parts: Vec<_> = outline.segments.iter().map(|segment| segment.part).collect();
     assert_eq!(parts[parts.len() - 3..], [OutlinePart::Root, OutlinePart::Flank, OutlinePart::TipLand], "{parts:?}");

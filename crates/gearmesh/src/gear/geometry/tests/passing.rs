@@ -182,7 +182,7 @@ proptest! {
         let of = |teeth, shift| {
             let mut given = specification(teeth, 1.0, shift);
             given.pressure_angle = angle * DEGREE;
-            given.rack = Rack { addendum: 0.9, dedendum: 1.2, tip_radius: 0.0 };
+            given.rack = Rack { addendum: 0.9, dedendum: 1.2, tip_radius: 0.0, ..Rack::ISO_53_A };
             given.rack.tip_radius = round * crate::gear::geometry::trochoid::full_round(&given);
             given
         };

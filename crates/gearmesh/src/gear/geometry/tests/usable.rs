@@ -104,7 +104,7 @@ fn what_contact_loses_is_what_is_left() {
 /// A tip that would be in the root is an error: deeper than the rack, whose round begins where the flank ends.
 #[test]
 fn a_tip_that_cuts_in_is_refused() {
-    let rack = Rack { addendum: 1.0, dedendum: 1.4, tip_radius: 0.39 };
+    let rack = Rack { addendum: 1.0, dedendum: 1.4, tip_radius: 0.39, ..Rack::ISO_53_A };
     let of = |teeth, longer: f64| Specification {
         rack,
         tip_radius: Some(3e-3 * (0.5 * f64::from(teeth) + 1.0 + longer)),

@@ -20,6 +20,7 @@ fn specification(teeth: u32, profile_shift: f64, allowance: f64) -> Specificatio
         pressure_angle: 20_f64.to_radians(),
         profile_shift,
         thickness_allowance: allowance,
+        cutter: None,
         rack: Rack::ISO_53_A,
         tip_radius: None,
         face_width: 20e-3,

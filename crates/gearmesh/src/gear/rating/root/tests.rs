@@ -5,8 +5,8 @@ use crate::gear::fixtures::standard;
 use crate::gear::geometry::Gear;
 
 fn tooth(teeth: f64, profile_shift: f64, tip_radius: f64, load_radius: f64) -> Tooth {
-    let rack = Rack { addendum: 1.0, dedendum: 1.25, tip_radius };
-    Tooth { teeth, pressure_angle: 20_f64.to_radians(), profile_shift, rack, load_radius }
+    let rack = Rack { addendum: 1.0, dedendum: 1.25, tip_radius, ..Rack::ISO_53_A };
+    Tooth { teeth, pressure_angle: 20_f64.to_radians(), profile_shift, rack, grinding_notch: 0.0, load_radius }
 }
 
 /// Tier: published; the table of Y_Fa and Y_Sa, load at the tip, that Chinese textbooks print after GB/T 3480 (= ISO 6336-3)
@@ -94,6 +94,132 @@ fn values_of_another_program() {
     }
 }
 
+/// Tier: second program; din3990 (hanslhansl, GitHub), its `AbschnittD_5`, with the protuberance profile of DIN 3990-11 (1.4, 0.4, s_pr
+/// 0.02) and a larger one, load at the tip; θ iterated to the end.
+#[test]
+fn another_program_s_values_with_protuberance() {
+    const VALUES: [(f64, f64, f64, [f64; 5]); 3] = [
+        (
+            23.0,
+            0.313,
+            0.02,
+            [
+                2.138_360_302_904_881_7,
+                2.081_358_199_681_826,
+                0.523_519_253_677_418_6,
+                2.486_901_312_008_319,
+                1.640_348_670_352_033_4,
+            ],
+        ),
+        (
+            19.0,
+            0.5,
+            0.02,
+            [
+                2.188_157_079_138_561,
+                2.139_678_530_408_195_6,
+                0.475_931_841_023_09,
+                2.349_784_951_002_340_5,
+                1.695_594_888_637_922_2,
+            ],
+        ),
+        (
+            40.0,
+            0.0,
+            0.05,
+            [
+                2.078_434_055_366_314,
+                2.022_962_664_753_851_7,
+                0.589_018_043_264_554_9,
+                2.699_667_537_901_002_2,
+                1.572_224_568_113_962_6,
+            ],
+        ),
+    ];
+    for (teeth, profile_shift, residual, [chord, lever, radius, form, correction]) in VALUES {
+        let rack = Rack {
+            dedendum: 1.4,
+            tip_radius: 0.4,
+            protuberance: residual + 0.1,
+            machining_allowance: 0.1,
+            ..Rack::ISO_53_A
+        };
+        let load_radius = 0.5 * teeth + 1.0 + profile_shift;
+        let found = section(&Tooth { rack, ..tooth(teeth, profile_shift, 0.4, load_radius) }).unwrap();
+        let near = |ours: f64, theirs: f64| assert!((ours / theirs - 1.0).abs() < 1e-12, "z {teeth}: {ours}, {theirs}");
+        near(found.chord, chord);
+        near(found.lever, lever);
+        near(found.fillet_radius, radius);
+        near(found.form_factor, form);
+        near(found.stress_correction_factor, correction);
+    }
+}
+
+/// Tier: second way; chord, height and radius of the fillet are those of the generated curve where its tangent stands at 30°, whatever
+/// its protuberance or stock.
+#[test]
+fn the_critical_section_is_on_the_generated_curve() {
+    for (residual, teeth) in [(0.0, 19), (0.03, 19), (0.05, 60), (-0.03, 30)] {
+        let rack = Rack {
+            dedendum: 1.4,
+            tip_radius: 0.3,
+            protuberance: 0.05 + residual,
+            machining_allowance: 0.05,
+            notch_radius: 0.1,
+            ..Rack::ISO_53_A
+        };
+        let specification = Specification { rack, ..standard(teeth, 1.0, 2.0) };
+        let curve = Gear::new(&specification).unwrap().trochoid();
+        let q = crate::numeric::crossing::bracketed(0.0, curve.joint_parameter(), |q| curve.rates(q).0 - FRAC_PI_6);
+        let q = q.or_else(|| {
+            // Above what is left of the curve.
+            crate::numeric::crossing::bracketed(0.0, 3.0, |q| curve.rates(q).0 - FRAC_PI_6)
+        });
+        let ([x, y], (_, rate, turning)) = (curve.point_at(q.unwrap()), curve.rates(q.unwrap()));
+        let load_radius = 0.5 * f64::from(teeth) + 1.0;
+        let found = section(&Tooth { rack, ..tooth(f64::from(teeth), 0.0, 0.3, load_radius) }).unwrap();
+        let by_curve = section_of_curve(&Tooth { rack, ..tooth(f64::from(teeth), 0.0, 0.3, load_radius) }, &curve, 1.0);
+        let differs = by_curve.unwrap().form_factor / found.form_factor - 1.0;
+        assert!(differs.abs() < 1e-11, "{residual}: {differs:e}");
+        assert!((found.chord / (2.0 * x) - 1.0).abs() < 1e-12, "{residual}: {} {x}", found.chord);
+        assert!((found.fillet_radius / (rate / turning) - 1.0).abs() < 1e-12, "{residual}");
+        let apex = 0.5 * f64::from(teeth) * 20_f64.to_radians().cos() / found.load_angle.cos();
+        assert!((found.lever - (apex - y)).abs() < 1e-11, "{residual}: {} {}", found.lever, apex - y);
+    }
+}
+
+/// Tier: closed form; Y_Sg/Y_S = 1.3/(1.3 − 0.6 √(t_g/ρ_g)), 1.3 at t_g = ρ_g/4; none from √(t_g/ρ_g) = 2 on.
+#[test]
+fn a_grinding_notch_raises_the_stress() {
+    let plain = tooth(19.0, 0.0, 0.38, 10.5);
+    let of = |grinding_notch: f64| section(&Tooth { grinding_notch, ..plain });
+    let ratio = of(0.25).unwrap().stress_correction_factor / of(0.0).unwrap().stress_correction_factor;
+    assert!((ratio - 1.3).abs() < 1e-14, "{ratio}");
+    assert!(of(3.99).is_ok() && matches!(of(4.0), Err(Outside::GrindingNotch(_))));
+    // Of a pair, from its racks: t_g is the stock that the protuberance leaves.
+    let rack = |allowance: f64| Rack {
+        protuberance: 0.01,
+        machining_allowance: allowance,
+        notch_radius: 0.12,
+        dedendum: 1.4,
+        tip_radius: 0.3,
+        ..Rack::ISO_53_A
+    };
+    let of = |allowance: f64| {
+        let pair = pair([30, 48], rack(allowance));
+        let gear = pair.pinion.specification;
+        let found = critical_section(&pair, Side::Pinion).unwrap();
+        let length =
+            pair.pinion.flank_end.roll * pair.pinion.base_radius - pair.base_pitch * (pair.contact_ratio - 1.0);
+        let load_radius = libm::hypot(length, pair.pinion.base_radius) / gear.module;
+        let teeth = f64::from(gear.teeth);
+        let bare = Tooth { rack: gear.rack, ..tooth(teeth, 0.0, 0.3, load_radius) };
+        found.stress_correction_factor / section(&bare).unwrap().stress_correction_factor
+    };
+    assert!((of(0.04) - 1.3).abs() < 1e-6, "{}", of(0.04));
+    assert!((of(0.01) - 1.0).abs() < 1e-15);
+}
+
 fn pair(teeth: [u32; 2], rack: Rack) -> GearPair {
     let [pinion, gear] = teeth.map(|teeth| Specification { rack, ..standard(teeth, 2e-3, 1.6) });
     GearPair::new(pinion, gear, None).unwrap()
@@ -103,7 +229,7 @@ fn pair(teeth: [u32; 2], rack: Rack) -> GearPair {
 /// the gear, and F_t is the torque over the reference radius, whichever gear it is.
 #[test]
 fn the_load_stands_at_the_outer_point_of_single_contact() {
-    let pair = pair([19, 48], Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 });
+    let pair = pair([19, 48], Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38, ..Rack::ISO_53_A });
     let points =
         [(Side::Pinion, pair.start_of_contact + pair.base_pitch), (Side::Gear, pair.end_of_contact - pair.base_pitch)];
     for (side, s) in points {
@@ -120,7 +246,7 @@ fn the_load_stands_at_the_outer_point_of_single_contact() {
 
 #[test]
 fn what_the_standard_does_not_hold_for_is_refused() {
-    let long = Rack { addendum: 1.2, dedendum: 1.45, tip_radius: 0.3 };
+    let long = Rack { addendum: 1.2, dedendum: 1.45, tip_radius: 0.3, ..Rack::ISO_53_A };
     let deep = nominal_root_stress(&pair([100, 120], long), Side::Gear, 10.0).unwrap_err();
     assert!(matches!(deep, Outside::ContactRatio(ratio) if ratio > 2.0), "{deep}");
     // A sharp rack leaves a sharp notch where there are many teeth.

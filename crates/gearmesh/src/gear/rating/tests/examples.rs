@@ -92,7 +92,8 @@ fn steel_on_plastic() -> (GearPair, Conditions) {
     let own = |teeth: u32, shift: f64, dedendum: f64, tip: f64, width: f64, material: Material| Specification {
         profile_shift: shift,
         thickness_allowance: 0.0,
-        rack: Rack { addendum: 1.0, dedendum, tip_radius: 0.2 },
+        cutter: None,
+        rack: Rack { addendum: 1.0, dedendum, tip_radius: 0.2, ..Rack::ISO_53_A },
         tip_radius: Some(0.5 * tip),
         face_width: width,
         bore_radius: 10e-3,
@@ -167,7 +168,7 @@ fn a_spur_pair_of_stplus() {
 #[test]
 fn a_spur_pair_of_din3990() {
     let own = |teeth, shift| Specification {
-        rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.25 },
+        rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.25, ..Rack::ISO_53_A },
         ..gear(teeth, 4e-3, shift, 48.64e-3, 20e-3)
     };
     let pair = pair(own(19, 0.5), own(104, 0.15));

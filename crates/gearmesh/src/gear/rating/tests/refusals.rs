@@ -57,7 +57,7 @@ fn what_a_factor_lacks_is_named() {
 #[test]
 fn what_is_stated_is_not_computed() {
     let sharp = |teeth| Specification {
-        rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.02 },
+        rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.02, ..Rack::ISO_53_A },
         ..gear(teeth, 3e-3, 0.0, 20e-3, 15e-3)
     };
     let sharp = pair(sharp(30), sharp(180));

@@ -153,6 +153,18 @@ fn broken(gear: &Gear, [amount, length]: [f64; 2]) -> Vec<[f64; 2]> {
             let [p, q] = [gear.tip_radius * angle.cos(), gear.tip_radius * angle.sin()];
             (1..=POINTS).map(|index| [x + (p - x) * at(index), y + (q - y) * at(index)]).collect()
         }
+        Tip::SemiTopping { angle, .. } => {
+            let (base, from) = (gear.reference_radius * angle.cos(), gear.radius_at(end));
+            let involute = |radius: f64| {
+                let roll = ((radius / base).powi(2) - 1.0).sqrt();
+                roll - roll.atan()
+            };
+            let on = |radius: f64| {
+                let angle = end - end.atan() + involute(radius) - involute(from);
+                [radius * angle.cos(), radius * angle.sin()]
+            };
+            (1..=POINTS).map(|index| on(from + (gear.tip_radius - from) * at(index))).collect()
+        }
         Tip::Rounding(radius) => {
             let step = (x - p).hypot(y - q);
             let centre = [x - radius * (y - q) / step, y + radius * (x - p) / step];
@@ -168,7 +180,8 @@ fn broken(gear: &Gear, [amount, length]: [f64; 2]) -> Vec<[f64; 2]> {
 #[test]
 fn the_gap_of_broken_tips_is_that_of_turned_outlines() {
     let specifications = [standard(30, 3e-3, 2.0), standard(40, 3e-3, 2.0)];
-    let tips = [Tip::Chamfer(0.2e-3), Tip::Rounding(0.15e-3), Tip::Rounding(0.6e-3)];
+    let ramp = Tip::SemiTopping { angle: 45_f64.to_radians(), height: 0.2e-3 };
+    let tips = [ramp, Tip::Chamfer(0.2e-3), Tip::Rounding(0.15e-3), Tip::Rounding(0.6e-3)];
     let mut earlier = f64::INFINITY;
     for (index, tip) in tips.into_iter().enumerate() {
         let pair = GearPair::with_tips(specifications, [tip; 2], None).unwrap();
@@ -188,7 +201,8 @@ fn the_gap_of_broken_tips_is_that_of_turned_outlines() {
         // What follows the end of the flank comes nearer than that end where it is an arc, the more so the larger it is.
         let end = Facing::new(&pair, Side::Gear).flank_end(0.3e-3).separation;
         let share = gaps.at(pair.start_of_contact - 0.3e-3).unwrap() / end;
-        assert!(share <= 1.0 && share < earlier * 0.99, "{index}: {share} {earlier}");
+        let is_corner = index < 2;
+        assert!(share <= 1.0 && (is_corner || share < earlier * 0.99), "{index}: {share} {earlier}");
         earlier = share;
     }
 }

@@ -41,7 +41,7 @@ impl Base {
     pub fn new(gear: &Gear, construction: &'static str) -> Result<Self, GeometryError> {
         let (base_radius, root_radius) = (gear.base_radius, gear.root_radius);
         if root_radius >= base_radius {
-            let rack = gear.specification.rack.dedendum - gear.specification.generating_profile_shift();
+            let rack = gear.dedendum() - gear.specification.generating_profile_shift();
             let teeth = 2.0 * rack / (1.0 - libm::cos(gear.specification.pressure_angle));
             return Err(Problem::NothingBelowBase {
                 construction,

@@ -1,12 +1,13 @@
-//! What a rack cuts: the trochoid of its tip round, which is the rack's own round, a sharp corner or a full round.
+//! What a tool cuts: the trochoid of its tip round, which is the rack's own round, a sharp corner or a full round, and what lies
+//! between that and the flank.
 //!
 //! Where the rack undercuts, the trochoid ends where it crosses the involute, and the profile has a corner there. Must not
 //! know: other roots.
 
-use super::super::curve::{Curve, OutlinePart, Segment};
 use super::{Root, Toe};
 use crate::gear::geometry::error::{GeometryError, Millimetres, Plain, Problem};
-use crate::gear::geometry::{Gear, Rack, Specification, trochoid};
+use crate::gear::geometry::root::RootShape;
+use crate::gear::geometry::{Gear, trochoid};
 use crate::numeric::crossing;
 use declare::{Declared, Words};
 
@@ -34,22 +35,22 @@ impl Root for Trochoid {
     fn toe(&self, gear: &Gear) -> Result<Toe, GeometryError> {
         let given = gear.specification;
         let tip_radius = match self.rack_tip {
-            RackTip::Given => given.rack.tip_radius,
+            RackTip::Given => given.tool_tip_radius(),
             RackTip::Sharp => 0.0,
             RackTip::FullRound => trochoid::full_round(&given),
         };
-        let other = Gear::new(&Specification { rack: Rack { tip_radius, ..given.rack }, ..given })?;
+        let other = Gear::new(&given.with_tool_tip_radius(tip_radius))?;
+        let root = other.root(RootShape::Trochoid)?;
         let curve = other.trochoid();
-        // Deep undercut may leave no neck: where the curve runs straight up, the tooth is thinnest.
+        // Deep undercut may leave no neck: where the curve runs straight up, or goes over into what follows, the tooth is
+        // thinnest.
         let to = curve.joint_parameter();
-        if let Some(neck) = crossing::bracketed(0.0, to, |q| curve.rates(q).0) {
-            let [half_thickness, height] = curve.point_at(neck);
-            if half_thickness <= 0.0 {
-                let minimum = Plain(other.least_shift_without_undercut());
-                return Err(Problem::CutOff { height: Millimetres(height), teeth: given.teeth, minimum }.into());
-            }
+        let neck = crossing::bracketed(0.0, to, |q| curve.rates(q).0).unwrap_or(to);
+        let [half_thickness, height] = curve.point_at(neck);
+        if half_thickness <= 0.0 {
+            let minimum = Plain(other.least_shift_without_undercut());
+            return Err(Problem::CutOff { height: Millimetres(height), teeth: given.teeth, minimum }.into());
         }
-        let root = Segment { part: OutlinePart::Root, curve: Curve::Trochoid(curve), from: 0.0, to };
-        Ok(Toe { segments: vec![root], form_roll: other.form_roll })
+        Ok(Toe::of(&root))
     }
 }
