@@ -144,7 +144,7 @@ pub fn sizing(gear: &Gear, roll: f64, fineness: Fineness) -> Sizing {
 /// a continuous field and shears where it does, which makes it 1 % stiffer than plane stress where it is as thick as
 /// the module.
 pub fn constants(material: Material, plane: Plane) -> (f64, f64) {
-    let Material { youngs_modulus, poisson_ratio: nu } = material;
+    let Material { youngs_modulus, poisson_ratio: nu, .. } = material;
     match plane {
         Plane::Strain => (youngs_modulus, nu),
         Plane::Stress => (youngs_modulus * (1.0 + 2.0 * nu) / ((1.0 + nu) * (1.0 + nu)), nu / (1.0 + nu)),
