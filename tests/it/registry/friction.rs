@@ -29,7 +29,7 @@ const LAWS: &[(&str, &str, &str, Option<&str>)] = &[
     (
         "benedict_kelley",
         "{ viscosity: 10 Pa s }",
-        "30000 rpm",
+        "6000 rpm",
         Some("; the law `benedict_kelley` of friction is known from 1"),
     ),
 ];
@@ -64,9 +64,10 @@ fn every_law_of_friction_runs() {
     );
     for (name, fields, speed, warning) in LAWS {
         assert!(is_name(name));
-        for more in ["", ", in_load_balance: true", ", corner_contact: exact", ", helix_slope: 10 um"] {
+        let all = ["", ", in_load_balance: true", ", corner_contact: exact", ", helix_slope: 10 um"];
+        for more in &all[..if *speed == "1500 rpm" { all.len() } else { 1 }] {
             let law = format!("{{ {name}: {fields} }}");
-            let (of_stage, of_friction) = if more.contains("balance") { ("", more) } else { (more, "") };
+            let (of_stage, of_friction) = if more.contains("balance") { ("", *more) } else { (*more, "") };
             let text = study(&law, of_stage, &format!("{speed}{of_friction}"));
             let ran = &walk(&load(&text))["ste"];
             let told = |warning: &str| ran.warnings.iter().any(|said| said.contains(warning));
