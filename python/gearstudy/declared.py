@@ -47,6 +47,7 @@ __all__ = [
     "OverBallsToothThickness",
     "Pair",
     "ParabolaRelief",
+    "PinionCutter",
     "Powell",
     "ProfileCrowning",
     "ProfileSlope",
@@ -55,6 +56,7 @@ __all__ = [
     "RootRelief",
     "RoundingTip",
     "Search",
+    "SemiToppingTip",
     "Sobol",
     "SpanToothThickness",
     "Stiffness",
@@ -1024,6 +1026,18 @@ class Rack(Declared):
         Dedendum coefficient h_fP*. 0.1 to 4. Without it: 1.25.
     tip_radius : number, optional
         Tip radius coefficient ρ_fP*. 0 to 2. Without it: 0.38.
+    protuberance : number, optional
+        Protuberance pr*: how far the round of the tip stands out of the straight flank, normal to it. 0 to 0.5.
+        Without it: 0.0.
+    protuberance_angle : number [rad], optional
+        Angle α_prP of the straight side of the protuberance, from the round to the flank; below the pressure
+        angle. 0.0174533 to 0.785398 rad. Without it: 10 deg.
+    machining_allowance : number, optional
+        Machining allowance q*: what the flanks of the tool leave on each flank of the tooth to be ground off. 0 to
+        0.5. Without it: 0.0.
+    notch_radius : number, optional
+        Radius ρ_g* of the notch that grinding leaves in the root, where the allowance is larger than the
+        protuberance. 0 to 2. Without it: 0.0.
 
     >>> gear = GearSpecification(teeth=24, face_width=20e-3, bore_radius=18e-3)
     >>> stub = Pair(module=3e-3, pinion=gear, gear=gear, rack=Rack(addendum=0.8, dedendum=1.05))
@@ -1037,10 +1051,50 @@ class Rack(Declared):
         addendum: float | None = None,
         dedendum: float | None = None,
         tip_radius: float | None = None,
+        protuberance: float | None = None,
+        protuberance_angle: Quantity | None = None,
+        machining_allowance: float | None = None,
+        notch_radius: float | None = None,
     ) -> None:
         super().__init__(
             addendum=addendum,
             dedendum=dedendum,
+            tip_radius=tip_radius,
+            protuberance=protuberance,
+            protuberance_angle=protuberance_angle,
+            machining_allowance=machining_allowance,
+            notch_radius=notch_radius,
+        )
+
+
+class PinionCutter(Declared):
+    """Pinion-type cutter that shapes this gear, where no rack cuts it; of the rack its addendum counts then.
+
+    Parameters
+    ----------
+    teeth : int
+        Number of teeth z_0. 4 to 10000.
+    profile_shift : number, optional
+        Profile shift coefficient x_0: of a new cutter above 0, and smaller each time it is sharpened. -2 to 3.
+        Without it: 0.0.
+    addendum : number, optional
+        Addendum coefficient h_aP0*: its tip radius is m(z_0/2 + x_0 + h_aP0*). 0.1 to 4. Without it: 1.25.
+    tip_radius : number, optional
+        Radius ρ_aP0* of the rounding of its tips. 0 to 2. Without it: 0.2.
+    """
+
+    def __init__(
+        self,
+        *,
+        teeth: int,
+        profile_shift: float | None = None,
+        addendum: float | None = None,
+        tip_radius: float | None = None,
+    ) -> None:
+        super().__init__(
+            teeth=teeth,
+            profile_shift=profile_shift,
+            addendum=addendum,
             tip_radius=tip_radius,
         )
 
@@ -1191,6 +1245,34 @@ class RoundingTip(Declared):
         )
 
 
+class SemiToppingTip(Declared):
+    """The chamfer that a semi-topping tool generates with its flank.
+
+    Parameters
+    ----------
+    angle : number [rad], optional
+        Angle α_KP of the tool's ramp; above the pressure angle. 0.08 to 1.4 rad. Without it: 45 deg.
+    height : number [m]
+        How far below the addendum line of the rack, m h_aP*, the ramp begins. 0 to 1 m.
+
+    >>> SemiToppingTip().name
+    'semi_topping'
+    """
+
+    name = "semi_topping"
+
+    def __init__(
+        self,
+        *,
+        height: Quantity,
+        angle: Quantity | None = None,
+    ) -> None:
+        super().__init__(
+            angle=angle,
+            height=height,
+        )
+
+
 class Material(Declared):
     """Material of this gear, when it is not the common one.
 
@@ -1242,9 +1324,11 @@ class GearSpecification(Declared):
         Tip shortening k in modules: r_a = m(z/2 + h_aP* + x − k). -1 to 1.
     rack : Rack | Mapping[str, Any], optional
         Basic rack that cuts this gear, when it is not the common one.
+    pinion_cutter : PinionCutter | Mapping[str, Any], optional
+        Pinion-type cutter that shapes this gear, where no rack cuts it; of the rack its addendum counts then.
     root : Literal["trochoid", "arc", "tangent_arc", "optimised_arc"] | TrochoidRoot | ArcRoot | TangentArcRoot | OptimisedArcRoot | Mapping[str, Any], optional
         Root of this gear's teeth in its outline, when it is not the common one.
-    tip : Literal["land", "chamfer", "rounding"] | LandTip | ChamferTip | RoundingTip | Mapping[str, Any], optional
+    tip : Literal["land", "chamfer", "rounding", "semi_topping"] | LandTip | ChamferTip | RoundingTip | SemiToppingTip | Mapping[str, Any], optional
         Corners of this gear's tips, when they are not the common ones.
     material : Material | Mapping[str, Any], optional
         Material of this gear, when it is not the common one.
@@ -1265,8 +1349,9 @@ class GearSpecification(Declared):
         tip_radius: Quantity | None = None,
         tip_shortening: float | None = None,
         rack: Rack | Mapping[str, Any] | None = None,
+        pinion_cutter: PinionCutter | Mapping[str, Any] | None = None,
         root: Literal["trochoid", "arc", "tangent_arc", "optimised_arc"] | TrochoidRoot | ArcRoot | TangentArcRoot | OptimisedArcRoot | Mapping[str, Any] | None = None,
-        tip: Literal["land", "chamfer", "rounding"] | LandTip | ChamferTip | RoundingTip | Mapping[str, Any] | None = None,
+        tip: Literal["land", "chamfer", "rounding", "semi_topping"] | LandTip | ChamferTip | RoundingTip | SemiToppingTip | Mapping[str, Any] | None = None,
         material: Material | Mapping[str, Any] | None = None,
     ) -> None:
         super().__init__(
@@ -1278,6 +1363,7 @@ class GearSpecification(Declared):
             tip_radius=tip_radius,
             tip_shortening=tip_shortening,
             rack=rack,
+            pinion_cutter=pinion_cutter,
             root=root,
             tip=tip,
             material=material,
