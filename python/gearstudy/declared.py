@@ -40,6 +40,7 @@ __all__ = [
     "LeadCrowning",
     "Material",
     "MeasuredRelief",
+    "MeasuredWith",
     "Modification",
     "NelderMead",
     "Nsga2",
@@ -1015,6 +1016,29 @@ class OverBallsToothThickness(Declared):
         )
 
 
+class MeasuredWith(Declared):
+    """What its thickness is measured with in `inspection`, when it is not as usual.
+
+    Parameters
+    ----------
+    span_teeth : int, optional
+        k, teeth that a span goes over; those whose planes touch nearest the V-circle when not given. 1 to 10000.
+    ball_diameter : number [m], optional
+        D_M, diameter of the balls; that of balls that touch the V-circle when not given. 1e-06 to 10 m.
+    """
+
+    def __init__(
+        self,
+        *,
+        span_teeth: int | None = None,
+        ball_diameter: Quantity | None = None,
+    ) -> None:
+        super().__init__(
+            span_teeth=span_teeth,
+            ball_diameter=ball_diameter,
+        )
+
+
 class Rack(Declared):
     """Basic rack that cuts this gear, when it is not the common one.
 
@@ -1282,6 +1306,8 @@ class Material(Declared):
         Young's modulus E. 1 to 1e+15 Pa. Without it: 206 GPa.
     poisson_ratio : number, optional
         Poisson's ratio ν. 0 to 0.4999. Without it: 0.3.
+    density : number [kg/m^3], optional
+        Density ρ. 1 to 100000 kg/m^3. Without it: 7830 kg/m^3.
 
     >>> gear = GearSpecification(teeth=24, face_width=20e-3, bore_radius=18e-3)
     >>> soft = Pair(module=3e-3, pinion=gear, gear=gear, material=Material(youngs_modulus=3e9, poisson_ratio=0.4))
@@ -1295,10 +1321,12 @@ class Material(Declared):
         *,
         youngs_modulus: Quantity | None = None,
         poisson_ratio: float | None = None,
+        density: Quantity | None = None,
     ) -> None:
         super().__init__(
             youngs_modulus=youngs_modulus,
             poisson_ratio=poisson_ratio,
+            density=density,
         )
 
 
@@ -1314,7 +1342,7 @@ class GearSpecification(Declared):
     bore_radius : number [m]
         Radius of the bore, where the body is clamped. 0 to 10000 m.
     profile_shift : number, optional
-        Profile shift coefficient x. -2 to 3. Without it: 0.0.
+        Profile shift coefficient x; 0 when nothing says it. -2 to 3.
     tooth_thickness : Literal["allowance", "span", "over_balls"] | AllowanceToothThickness | SpanToothThickness | OverBallsToothThickness | Mapping[str, Any], optional
         Thickness of the teeth, when it is not that without backlash: profile shift, tip circle and centre distance
         are then nominal.
@@ -1322,6 +1350,10 @@ class GearSpecification(Declared):
         Tip radius r_a, when it is not m(z/2 + h_aP* + x). 1e-06 to 10000 m.
     tip_shortening : number, optional
         Tip shortening k in modules: r_a = m(z/2 + h_aP* + x − k). -1 to 1.
+    from_centre_distance : Literal["profile_shift", "tip_shortening", "both"], optional
+        What of this gear is not stated, but follows from the centre distance.
+    measured_with : MeasuredWith | Mapping[str, Any], optional
+        What its thickness is measured with in `inspection`, when it is not as usual. Without it: the usual one.
     rack : Rack | Mapping[str, Any], optional
         Basic rack that cuts this gear, when it is not the common one.
     pinion_cutter : PinionCutter | Mapping[str, Any], optional
@@ -1348,6 +1380,8 @@ class GearSpecification(Declared):
         tooth_thickness: Literal["allowance", "span", "over_balls"] | AllowanceToothThickness | SpanToothThickness | OverBallsToothThickness | Mapping[str, Any] | None = None,
         tip_radius: Quantity | None = None,
         tip_shortening: float | None = None,
+        from_centre_distance: Literal["profile_shift", "tip_shortening", "both"] | None = None,
+        measured_with: MeasuredWith | Mapping[str, Any] | None = None,
         rack: Rack | Mapping[str, Any] | None = None,
         pinion_cutter: PinionCutter | Mapping[str, Any] | None = None,
         root: Literal["trochoid", "arc", "tangent_arc", "optimised_arc"] | TrochoidRoot | ArcRoot | TangentArcRoot | OptimisedArcRoot | Mapping[str, Any] | None = None,
@@ -1362,6 +1396,8 @@ class GearSpecification(Declared):
             tooth_thickness=tooth_thickness,
             tip_radius=tip_radius,
             tip_shortening=tip_shortening,
+            from_centre_distance=from_centre_distance,
+            measured_with=measured_with,
             rack=rack,
             pinion_cutter=pinion_cutter,
             root=root,
