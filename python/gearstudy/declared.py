@@ -1279,7 +1279,7 @@ class SemiToppingTip(Declared):
     height : number [m]
         How far below the addendum line of the rack, m h_aP*, the ramp begins. 0 to 1 m.
 
-    >>> SemiToppingTip().name
+    >>> SemiToppingTip(height="0.2 mm").name
     'semi_topping'
     """
 
