@@ -1342,7 +1342,7 @@ class GearSpecification(Declared):
     bore_radius : number [m]
         Radius of the bore, where the body is clamped. 0 to 10000 m.
     profile_shift : number, optional
-        Profile shift coefficient x; 0 when nothing says it. -2 to 3.
+        Profile shift coefficient x. -2 to 3. Without it: 0.0.
     tooth_thickness : Literal["allowance", "span", "over_balls"] | AllowanceToothThickness | SpanToothThickness | OverBallsToothThickness | Mapping[str, Any], optional
         Thickness of the teeth, when it is not that without backlash: profile shift, tip circle and centre distance
         are then nominal.

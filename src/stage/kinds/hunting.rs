@@ -203,9 +203,13 @@ impl Stage for Stated {
     fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
         let designs = ahead.rows(names::designs::TABLE, names::designs::TABLE);
         let curves = designs.times(RowCount::exact(self.torque.len()));
-        // Nobody knows yet how many teeth there are: those that are stated, or as many as usual.
-        let teeth = self.cumulative().map(|of| u32::try_from(of.len()).ok().filter(|count| *count > 0).unwrap_or(30));
-        let period = hunting_period(teeth);
+        // Nobody knows yet how many teeth there are but those that are stated: a usual ratio, and no common factor.
+        let period = hunting_period(match self.cumulative().map(|of| u32::try_from(of.len()).unwrap_or(u32::MAX)) {
+            [0, 0] => [30, 61],
+            [pinion, 0] => [pinion, pinion.saturating_mul(2).saturating_add(1)],
+            [0, gear] => [(gear / 2).saturating_sub(1), gear],
+            both => both,
+        });
         let positions = curves.times(RowCount::about(period.saturating_mul(self.positions)));
         let orders = curves.times(RowCount::about(period.saturating_mul(self.harmonics)));
         Estimate::new(true)

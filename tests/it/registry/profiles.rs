@@ -112,7 +112,7 @@ fn a_gear_alone_is_drawn_over_the_whole_range() {
                     let names: Vec<_> = ran["one"].tables.iter().map(Table::name).collect();
                     assert_eq!(
                         names,
-                        ["gears", "outline", "junctions", "validity", "root_arc", "arc_drawing", "inspection"]
+                        ["gears", "outline", "junctions", "validity", "root_arc", "arc_drawing", "inspection", "body"]
                     );
                     assert!(ran["one"].tables[..4].iter().all(|table| table.rows() > 0), "{text}");
                     let jumps = ran["one"].tables[2].floats("position_jump");

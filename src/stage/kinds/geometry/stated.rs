@@ -111,9 +111,9 @@ pub struct StatedGear {
     /// Radius of the bore, where the body is clamped.
     #[declared(minimum = 0.0, maximum = 1e4, dimension = LENGTH, example = "18 mm")]
     pub bore_radius: f64,
-    /// Profile shift coefficient x; 0 when nothing says it.
-    #[declared(minimum = -2.0, maximum = 3.0, example = "0.2")]
-    pub profile_shift: Option<f64>,
+    /// Profile shift coefficient x.
+    #[declared(minimum = -2.0, maximum = 3.0, default = "0.0")]
+    pub profile_shift: f64,
     /// Thickness of the teeth, when it is not that without backlash: profile shift, tip circle and centre distance are then
     /// nominal.
     pub tooth_thickness: Option<Box<dyn thickness::Stated>>,
@@ -215,7 +215,10 @@ impl StatedGears {
                 (_, Some(_)) if tip_follows => return twice(own.tip_shortening, own.from_centre_distance, tip),
                 _ => {}
             }
-            if gear.shift_follows() && gear.profile_shift.is_some() {
+            let own_record = record.inside(side.name());
+            // A default stands where its gear does.
+            let states_shift = gear.profile_shift != 0.0 || own_record.place_of(own.profile_shift) != own_record.place;
+            if gear.shift_follows() && states_shift {
                 return twice(own.profile_shift, own.from_centre_distance, "the profile shift");
             }
             if follows.is_some() && (self.gear.is_none() || self.centre_distance.is_none()) {
@@ -242,7 +245,7 @@ impl StatedGears {
     /// x of both gears, and k where a tip follows from the centre distance.
     fn shifts(&self, gear: &StatedGear) -> Result<([f64; 2], Option<f64>), GeometryError> {
         let gears = [&self.pinion, gear];
-        let mut shifts = gears.map(|gear| gear.profile_shift.unwrap_or(0.0));
+        let mut shifts = gears.map(|gear| gear.profile_shift);
         let Some(distance) =
             self.centre_distance.filter(|_| gears.iter().any(|gear| gear.from_centre_distance.is_some()))
         else {
@@ -289,8 +292,7 @@ impl StatedGears {
     /// # Errors
     /// When it cannot be.
     pub fn alone(&self, common: Tip) -> Result<Gear, GeometryError> {
-        let shift = self.pinion.profile_shift.unwrap_or(0.0);
-        Gear::new(&self.specification(&self.pinion, shift, None)?)
+        Gear::new(&self.specification(&self.pinion, self.pinion.profile_shift, None)?)
             .and_then(|gear| gear.with_tip(self.pinion.tip(common)))
     }
 

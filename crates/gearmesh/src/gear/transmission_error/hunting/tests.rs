@@ -1,3 +1,5 @@
+//! Pitch deviations against springs behind steps, turned gears, and rigid flanks.
+
 #![allow(clippy::float_cmp)] // where a result must be exact, that is what is asked
 
 use super::{PitchDeviations, hunting_period};
