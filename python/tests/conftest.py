@@ -2,11 +2,15 @@
 
 import math
 import os
+import signal
 from pathlib import Path
 
 import pytest
 
 import gearstudy as gs
+
+# A job in the background of a script is started with Ctrl-C switched off, and what it starts inherits that.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 ROOT = Path(os.environ.get("GEARSTUDY_ROOT", Path(__file__).resolve().parents[2]))
 

@@ -148,7 +148,7 @@ impl Modification for Twist {
 #[test]
 fn a_twisted_flank_is_a_slope_that_turns() {
     let pair = pair();
-    let settings = Settings { slices: 1025, ..Settings::default() };
+    let settings = Settings { slices: 1025, positions: 16, ..Settings::default() };
     let cycle = MeshCycle::new(&pair, &constant(&pair, STIFFNESS), settings).unwrap();
     let (middle, rate) = (0.3, 4e-3);
     let (twisted, mirrored) = (of(Twist { middle, rate }), of(Twist { middle, rate: -rate }));
