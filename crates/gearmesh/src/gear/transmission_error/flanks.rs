@@ -22,6 +22,8 @@ pub(super) struct Flanks<'a> {
     pub(super) face: Face<'a>,
     /// Whether the face differs from position to position.
     pub(super) is_surface: bool,
+    /// Whether the face is the same on either side of its middle.
+    pub(super) is_even: bool,
     /// In the middle of the face.
     middle: FaceSection<'a>,
     /// Of a surface those of all slices of the face, or of all its strips; otherwise none.
@@ -45,19 +47,24 @@ struct FaceSection<'a> {
 
 impl<'a> Flanks<'a> {
     pub(super) fn new(cycle: &'a MeshCycle, design: &'a Design) -> Self {
+        Self::of(cycle, design, design.varies_over_surface(), design.lead_is_even())
+    }
+
+    /// Of a design that is looked at as one that varies over the surface, or is not even, though it may be less than that.
+    pub(super) fn of(cycle: &'a MeshCycle, design: &'a Design, is_surface: bool, is_even: bool) -> Self {
         let section = |(share, z): (f64, f64)| FaceSection::new(cycle, design, share, z, design.lead(z));
         let middle = FaceSection::new(cycle, design, 1.0, 0.0, 0.0);
-        if !design.varies_over_surface() {
+        if !is_surface {
             let face = Face::new(design, cycle.face_width, &cycle.slices);
-            return Self { cycle, face, is_surface: false, middle, sections: Vec::new() };
+            return Self { cycle, face, is_surface, is_even, middle, sections: Vec::new() };
         }
         let half = 0.5 * cycle.face_width;
         let places = match &cycle.across {
-            Some(across) => places_in(&strips(cycle, design.lead_is_even()), &across.rule),
+            Some(across) => places_in(&strips(cycle, is_even), &across.rule),
             None => Face::places(design, [-half, half], &cycle.slices),
         };
         let sections = places.into_iter().map(section).collect();
-        let mut flanks = Self { cycle, face: Face::flat(&cycle.slices), is_surface: true, middle, sections };
+        let mut flanks = Self { cycle, face: Face::flat(&cycle.slices), is_surface, is_even, middle, sections };
         flanks.face = flanks.face_at(cycle.pair.start_of_contact);
         flanks
     }
