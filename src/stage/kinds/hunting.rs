@@ -82,9 +82,9 @@ const AT_ONCE: usize = 64;
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let stated = Stated::checked(record)?;
-    let gears = [(Stated::NAMES.pinion, &stated.pinion), (Stated::NAMES.gear, &stated.gear)];
-    let checked = |(name, gear): (&str, &Option<StatedDeviations>)| {
-        gear.as_ref().map_or(Ok(()), |gear| gear.check(name, record.place_of(name)))
+    let gears = [(Stated::NAMES.pinion, stated.pinion.as_ref()), (Stated::NAMES.gear, stated.gear.as_ref())];
+    let checked = |(name, gear): (&str, Option<&StatedDeviations>)| {
+        gear.map_or(Ok(()), |gear| gear.check(name, record.place_of(name)))
     };
     Faults::collect(gears.into_iter().map(checked))?;
     common::check_slices(stated.settings(), record)?;

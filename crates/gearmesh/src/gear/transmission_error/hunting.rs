@@ -122,7 +122,7 @@ pub fn hunting_period(teeth: [u32; 2]) -> usize {
     (teeth[0] as usize).saturating_mul((teeth[1] / larger.max(1)) as usize)
 }
 
-impl<'a> LoadCase<'a> {
+impl LoadCase<'_> {
     /// The same design with teeth that differ, of which [`LoadCase::over_pitches`] takes the pairs in contact. Without friction.
     #[must_use]
     pub fn with_teeth(self, teeth: &Teeth) -> Self {

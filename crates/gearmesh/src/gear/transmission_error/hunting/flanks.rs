@@ -57,13 +57,14 @@ impl ToothFlanks {
     ///
     /// # Errors
     /// Of which gear, which tooth, from 0, and why.
-    pub fn fit(&self, design: &Design, pair: &GearPair) -> Result<(), (Side, usize, Diagnostic)> {
+    pub fn fit(&self, design: &Design, pair: &GearPair) -> Result<(), (Side, usize, Box<Diagnostic>)> {
         for side in [Side::Pinion, Side::Gear] {
             for (tooth, flank) in self.teeth[side as usize].iter().enumerate().filter(|(_, own)| !own.parts.is_empty())
             {
                 let mut own = Design::default();
-                *(if side == Side::Pinion { &mut own.pinion } else { &mut own.gear }) = flank.parts.clone();
-                design.with(&own, pair).map_err(|wrong| (side, tooth, wrong))?;
+                let parts = if side == Side::Pinion { &mut own.pinion } else { &mut own.gear };
+                parts.extend_from_slice(&flank.parts);
+                design.with(&own, pair).map_err(|wrong| (side, tooth, Box::new(wrong)))?;
             }
         }
         Ok(())

@@ -359,7 +359,7 @@ fn a_mirrored_lead_gives_the_mirrored_loads() {
             let sliced = loading.slices().unwrap();
             let pair = |spring: usize| (spring, cycle.path_position(1e-3, spring), 1e-6 * spring as f64);
             let reach = within_reach((0..2).map(pair));
-            sliced.slices(&loading, &reach, [loading.force, 4e-5]).0
+            sliced.slices(loading, &reach, [loading.force, 4e-5]).0
         });
         for pair in 0..2 {
             for slice in 0..15 {

@@ -111,7 +111,9 @@ fn the_same_trace_on_every_tooth_is_a_design() {
             let cycle = cycle(&pair, &compliance, corner_contact);
             for (side, trace) in SIDES.into_iter().flat_map(|side| traces.map(|trace| (side, trace))) {
                 for base in &bases {
-                    [0.0, 1867.0].into_iter().for_each(|force| on_every_tooth(&cycle, base, (side, trace), force));
+                    for force in [0.0, 1867.0] {
+                        on_every_tooth(&cycle, base, (side, trace), force);
+                    }
                 }
             }
         }
