@@ -77,6 +77,9 @@ struct Stated {
 
 /// The most positions of a hunting period: a minute of solves.
 const MOST_POSITIONS: usize = 50_000_000;
+/// Time of a solve between flanks of single teeth over that of one between the design's: five where all teeth have some, little
+/// more than one where one has.
+const TRACED_SOLVES: f64 = 3.0;
 /// Base pitches that a thread takes at once.
 const AT_ONCE: usize = 64;
 
@@ -189,8 +192,9 @@ impl Stage for Stated {
             |table: &str, rows: RowCount| if demand.table(table) { rows.count.saturating_mul(8) } else { 0 };
         let kept_bytes = kept_bytes(tables::CURVE, positions).saturating_add(kept_bytes(tables::SPECTRUM, orders));
         let traces: usize = self.gears().into_iter().flatten().map(StatedDeviations::traces).sum();
+        let times = common::solve_times(self.settings()) * if traces > 0 { TRACED_SOLVES } else { 1.0 };
         Estimate::new(true)
-            .work(&Work::of(&CONTACT_SOLVES, positions.index()), common::solve_times(self.settings()))
+            .work(&Work::of(&CONTACT_SOLVES, positions.index()), times)
             .holding(curve_bytes.saturating_add(kept_bytes))
             .rows(demand, summary().schema(), curves)
             .columns(demand, spectrum().schema(), orders)
