@@ -8,6 +8,7 @@ pub mod common;
 pub mod compliance;
 pub mod designs;
 pub mod doubts;
+pub mod evaluated;
 pub mod foreign;
 pub mod formula;
 pub mod kinds;

@@ -1,17 +1,24 @@
-//! Gears with pitch deviations as a stage.
+//! Gears whose teeth deviate as a stage.
 
 use std::f64::consts::TAU;
+use std::fs;
 
 use studygraph::table::data::Table;
 
+use crate::desk::Desk;
 use crate::registry::walk::{load, walk};
 
 const TEETH: [u32; 2] = [19, 48];
 
 fn study(of: &str, deviations: &[f64], list: &str) -> String {
     let list_of: Vec<String> = deviations.iter().map(|deviation| format!("{deviation} um")).collect();
+    with(&format!("{of}: {{ {list}: [{}] }}", list_of.join(", ")))
+}
+
+/// A study of which `hunting` has these fields too.
+fn with(fields: &str) -> String {
     format!(
-        "study: t\nstages:
+        "study: t\nseed: 1\nstages:
   geometry:
     kind: geometry
     module: 3 mm
@@ -19,11 +26,9 @@ fn study(of: &str, deviations: &[f64], list: &str) -> String {
     gear: {{ teeth: {}, face_width: 20 mm, bore_radius: 38 mm }}
   designs: {{ kind: modification, pair: geometry, designs: {{ plain: [] }} }}
   stiffness: {{ kind: stiffness, pair: geometry, method: energy }}
-  hunting: {{ kind: hunting, stiffness: stiffness, designs: designs, torque: 500 N m, {of}: {{ {list}: [{}] }} }}
+  hunting: {{ kind: hunting, stiffness: stiffness, designs: designs, torque: 500 N m, {fields} }}
 ",
-        TEETH[0],
-        TEETH[1],
-        list_of.join(", ")
+        TEETH[0], TEETH[1]
     )
 }
 
@@ -92,4 +97,112 @@ fn pitch_deviations_come_back() {
     let without = ran(&study("pinion", &vec![0.0; TEETH[0] as usize], "single"), "summary");
     let [with, alone] = ["peak_to_peak", "peak_to_peak_without_deviations"].map(|column| without.floats(column)[0]);
     assert!(with <= alone && with > 0.99 * alone, "{with} of {alone}");
+}
+
+/// A straight profile, from −3 um at the start of the pinion's active flank to 5 um at its tip.
+fn straight() -> String {
+    let points = (0..=20).map(|at| (2.01 + 14.57 * f64::from(at) / 20.0, -3.0 + 8.0 * f64::from(at) / 20.0));
+    let lines: Vec<String> = points.map(|(place, deviation)| format!("{place:.4};{deviation:.4}")).collect();
+    format!("# teeth: 19\n# module: 3 mm\nroll_lengths [mm]; deviations [um]\n{}\n", lines.join("\n"))
+}
+
+const TRACED: &str = "pinion: { flanks: [{ tooth: [5, 2], file: traces/straight.csv }, { tooth: 2, face_positions: [-8 mm, 8 mm], \
+                      deviations: [0 um, 4 um] }] }, gear: { single: [1 um], flanks: [] }";
+
+fn desk(fields: &str) -> Desk {
+    let desk = Desk::with("quick.yaml");
+    fs::create_dir(desk.path("traces")).unwrap();
+    fs::write(desk.path("traces/straight.csv"), straight()).unwrap();
+    fs::write(desk.path("hunting.yaml"), with(fields)).unwrap();
+    desk
+}
+
+/// Tier: closed form; a straight trace is all slope, and so it is whoever is asked: the slope is that over the whole of the active flank.
+#[test]
+fn traces_of_teeth_are_evaluated() {
+    let lists = "roll_lengths: [2.1 mm, 16.1 mm], deviations: [-3 um, 4 um]";
+    let fields =
+        TRACED.replace("file: traces/straight.csv", lists).replace(", gear: { single: [1 um], flanks: [] }", "");
+    let text = with(&fields);
+    let (flanks, summary) = (ran(&text, "flanks"), ran(&text, "summary"));
+    assert_eq!(flanks.texts("trace"), ["helix", "profile", "profile"]);
+    assert_eq!(
+        (flanks.integers("tooth"), flanks.texts("gear")),
+        (&[2, 2, 5][..], &["pinion", "pinion", "pinion"].map(String::from)[..])
+    );
+    // 4 um over 16 mm of a face of 20 mm; 7 um over 14 mm.
+    let lengths = [16.583_582_258_9 - 2.009_266_843_7, 20.0];
+    for (row, (rate, length)) in [(0.25, lengths[1]), (0.5, lengths[0]), (0.5, lengths[0])].into_iter().enumerate() {
+        assert!((flanks.floats("slope")[row] - rate * length).abs() < 1e-6, "{row}: {}", flanks.floats("slope")[row]);
+        assert!(flanks.floats("form")[row].abs() < 1e-9 && flanks.floats("crowning")[row].abs() < 1e-9);
+        let total = rate * (flanks.floats("end")[row] - flanks.floats("start")[row]);
+        assert!((flanks.floats("total")[row] - total).abs() < 1e-9);
+    }
+    assert_eq!((summary.integers("pinion_flanks"), summary.integers("gear_flanks")), (&[2][..], &[0][..]));
+    let [with, without] = ["peak_to_peak", "peak_to_peak_without_deviations"].map(|column| summary.floats(column)[0]);
+    assert!(with > without + 1.0, "{with} {without}");
+}
+
+/// One clear message each, with its place: in the study, or in the file.
+#[test]
+fn what_is_wrong_with_a_tooth_has_its_place() {
+    let desk = desk("");
+    let file = straight();
+    for (fields, file, message) in [
+        (
+            TRACED.to_owned(),
+            file.clone(),
+            "hunting.yaml:11:241: the gear has 48 teeth, but 1 pitch deviations are stated",
+        ),
+        (
+            TRACED.replace(
+                "single: [1 um], flanks: []",
+                "flanks: [{ tooth: 49, diameters: [139 mm, 150 mm], deviations: [1 um, 1 um] }]",
+            ),
+            file.clone(),
+            "hunting.yaml:11:251: the gear has 48 teeth, and no tooth 49",
+        ),
+        (
+            "pinion: { flanks: { tooth: 3, file: traces/straight.csv } }".to_owned(),
+            file.replace("# teeth: 19", "# teeth: 48"),
+            "straight.csv:1:10: a flank of the pinion: a gear of 48 teeth was measured, and this one has 19",
+        ),
+        (
+            "pinion: { flanks: { tooth: 3, file: traces/straight.csv } }".to_owned(),
+            file.replace("# module: 3 mm", "# module: 4 mm"),
+            "straight.csv:2:11: a flank of the pinion: a gear of module 4",
+        ),
+        (
+            "gear: { flanks: { file: traces/straight.csv } }".to_owned(),
+            file.replace("# teeth: 19", "# tooth: 1"),
+            "straight.csv:3:1: a flank of the gear: the trace goes from 2.01",
+        ),
+        (
+            "pinion: { flanks: { file: traces/straight.csv } }".to_owned(),
+            file.replace("# teeth: 19", "# tooth: [1, 20]"),
+            "straight.csv:1:10: the pinion has 19 teeth, and no tooth 20",
+        ),
+        (
+            "pinion: { flanks: { file: traces/straight.csv } }".to_owned(),
+            file.clone(),
+            "hunting.yaml:11:96: `flanks` has no `tooth`",
+        ),
+    ] {
+        fs::write(desk.path("hunting.yaml"), with(&fields)).unwrap();
+        fs::write(desk.path("traces/straight.csv"), file).unwrap();
+        let said = desk.run(&["check", "hunting.yaml"], 2).1;
+        assert!(said.contains(message), "{message}\n{said}");
+    }
+}
+
+/// Tier: invariant, to the last bit.
+#[test]
+fn any_number_of_threads_gives_the_same_curve() {
+    let fields = TRACED.replace(", gear: { single: [1 um], flanks: [] }", "");
+    let curves = ["1", "2"].map(|threads| {
+        let desk = desk(&fields);
+        desk.run(&["run", "hunting.yaml", "--want", "hunting.curve", "--quiet", "--jobs", threads], 0);
+        desk.contents("t").into_iter().find(|(name, _)| name == "hunting.curve").unwrap().1
+    });
+    assert_eq!(curves[0], curves[1]);
 }

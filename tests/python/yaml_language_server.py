@@ -85,7 +85,8 @@ for path in studies:
 beyond = {
     "bore_above_root", "condition_on_unknown_column", "contact_law_of_a_whole_pair", "contact_ratio_below_one", "cycle",
     "interference", "thickness_upside_down", "profile_shift_said_twice", "profile_shifts_both_follow",
-    "pitch_deviations_twice", "thickness_leaves_no_tooth", "balls_too_near", "load_dependent_without_torque",
+    "pitch_deviations_twice", "tooth_measured_twice", "teeth_without_deviations", "thickness_leaves_no_tooth",
+    "balls_too_near", "load_dependent_without_torque",
     "missing_column", "missing_stage", "missing_table", "no_row_with_this_design", "no_row_with_this_torque",
     "pointed_tip", "rack_above_full_round", "relief_given_twice", "resolved_contact_of_a_beam",
     "resolved_contact_without_torque", "root_stress_without_a_mesh", "sharp_root_of_finite_elements",

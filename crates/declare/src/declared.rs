@@ -4,7 +4,7 @@
 //! not know: YAML, and what any parameter means.
 
 use crate::error::{Diagnostic, Place};
-use crate::parameter::{Choice, Field, Member, Presence, Shape};
+use crate::parameter::{Choice, FILE, Field, Member, Presence, Shape};
 use crate::record::varied::Varied;
 use crate::record::{PlacedValue, Record, Value, Variant};
 use crate::units::parse_quantity;
@@ -71,6 +71,24 @@ pub trait Joint: Sized {
 
     /// Adds the fields that say the same.
     fn write(&self, fields: &mut Vec<(&'static str, PlacedValue)>);
+}
+
+/// The field [`FILE`] of a struct whose lists may stand in a CSV file: nothing is left of it in a record.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FromFile;
+
+impl Joint for FromFile {
+    const FIELDS: &'static [Field] = &[FILE];
+
+    fn consistent(_record: &Record) -> Result<(), Diagnostic> {
+        Ok(())
+    }
+
+    fn read(_record: &Record) -> Self {
+        Self
+    }
+
+    fn write(&self, _fields: &mut Vec<(&'static str, PlacedValue)>) {}
 }
 
 /// What a field may be beside numbers, flags and texts.

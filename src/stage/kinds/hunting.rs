@@ -1,24 +1,25 @@
-//! `kind: hunting`: transmission error until the same teeth meet again, of gears with pitch deviations, and its order spectrum.
+//! `kind: hunting`: transmission error until the same teeth meet again, of gears whose teeth deviate, and its order spectrum.
 //!
 //! Must not know: how equilibrium is found.
 
+mod stated;
 mod tables;
 
-use self::tables::{Case, Found, Order, Row, curve, spectrum, summary};
+use self::stated::{OfPair, StatedDeviations};
+use self::tables::{Case, Found, Order, Row, curve, flanks, spectrum, summary};
 use crate::stage::common::{Contact, Slices};
-use crate::stage::names;
 use crate::stage::{Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, RowCount, Stage};
-use crate::stage::{common, designs};
+use crate::stage::{common, designs, names, pair};
 use declare::Declared;
 use declare::declared::Declared;
-use declare::error::{Diagnostic, Failure, Faults};
+use declare::error::{Failure, Faults};
 use declare::record::Record;
-use declare::units::{LENGTH, TORQUE, in_unit};
+use declare::units::{TORQUE, in_unit};
 use declare::work::Work;
 use gearmesh::gear::geometry::{GearPair, Side};
 use gearmesh::gear::modification::{self, Design};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::hunting::{PitchDeviations, hunting_period};
+use gearmesh::gear::transmission_error::hunting::{Teeth, hunting_period};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::gear::work::CONTACT_SOLVES;
 use gearmesh::numeric::spectrum::amplitudes;
@@ -39,11 +40,14 @@ stiffness: stiffness
 designs: modification
 torque: 100 N m
 pinion: { single: [2 um, -3 um, 1 um, 4 um, -2 um, 0 um, 3 um, -4 um, 1 um, -1 um, 2 um, -2 um, 3 um, -3 um, 0 um, 1 um, -2 um, 2 um, -2 um] }
+gear:
+  flanks:
+    - { tooth: 1, roll_lengths: [18 mm, 23 mm, 28 mm, 32 mm], deviations: [2 um, 0 um, -1 um, -6 um] }
 ",
     build,
 };
 
-/// Transmission error over a hunting period, by the pitch deviations of every tooth, with its order spectrum.
+/// Transmission error over a hunting period, by the deviations of every tooth, with its order spectrum.
 #[derive(Debug, Declared)]
 struct Stated {
     /// The pair's compliances.
@@ -55,9 +59,9 @@ struct Stated {
     /// Torque on the pinion.
     #[declared(minimum = 0.0, maximum = 1e9, dimension = TORQUE, axis = usize::MAX, example = "100 N m")]
     pub torque: Vec<f64>,
-    /// Pitch deviations of the pinion's teeth; none when not given.
+    /// Deviations of the pinion's teeth; none when not given.
     pub pinion: Option<StatedDeviations>,
-    /// Pitch deviations of the gear's teeth; none when not given.
+    /// Deviations of the gear's teeth; none when not given.
     pub gear: Option<StatedDeviations>,
     /// Positions per base pitch.
     #[declared(minimum = 4, maximum = 10_000, default = "32")]
@@ -71,52 +75,23 @@ struct Stated {
     pub harmonics: usize,
 }
 
-/// Pitch deviations of the working flanks as they are measured on the reference circle, one of each tooth in the order in which
-/// teeth come into mesh (ISO 1328-1).
-#[derive(Clone, Debug, Declared)]
-struct StatedDeviations {
-    /// Cumulative pitch deviations F_p: how much farther from the first tooth's flank than its nominal place, in the direction of
-    /// counting.
-    #[declared(minimum = -MOST, maximum = MOST, dimension = LENGTH, example = "3 um")]
-    pub cumulative: Option<Vec<f64>>,
-    /// Single pitch deviations f_p: of the pitch that ends at this tooth. Their mean is taken off.
-    #[declared(minimum = -MOST, maximum = MOST, dimension = LENGTH, example = "-3 um")]
-    pub single: Option<Vec<f64>>,
-}
-
-/// The largest deviation that is looked at \[m\]; beyond it nothing is small against a tooth.
-const MOST: f64 = 1e-3;
 /// The most positions of a hunting period: a minute of solves.
 const MOST_POSITIONS: usize = 50_000_000;
+/// Time of a solve between flanks of single teeth over that of one between the design's: five where all teeth have some, little
+/// more than one where one has.
+const TRACED_SOLVES: f64 = 3.0;
 /// Base pitches that a thread takes at once.
 const AT_ONCE: usize = 64;
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let stated = Stated::checked(record)?;
-    for (name, gear) in [(Stated::NAMES.pinion, &stated.pinion), (Stated::NAMES.gear, &stated.gear)] {
-        let Some(gear) = gear else { continue };
-        if gear.cumulative.is_some() == gear.single.is_some() {
-            let names = StatedDeviations::NAMES;
-            let message = format!("give `{}` or `{}` of the {name}'s teeth", names.cumulative, names.single);
-            return Err(Diagnostic::new(message).at(record.place_of(name)).into());
-        }
-    }
+    let gears = [(Stated::NAMES.pinion, stated.pinion.as_ref()), (Stated::NAMES.gear, stated.gear.as_ref())];
+    let checked = |(name, gear): (&str, Option<&StatedDeviations>)| {
+        gear.map_or(Ok(()), |gear| gear.check(name, record.place_of(name)))
+    };
+    Faults::collect(gears.into_iter().map(checked))?;
     common::check_slices(stated.settings(), record)?;
     Ok(Box::new(stated))
-}
-
-impl StatedDeviations {
-    /// F_p of each tooth \[m\].
-    fn cumulative(&self) -> Vec<f64> {
-        let Some(single) = &self.single else { return self.cumulative.clone().unwrap_or_default() };
-        let mean = single.iter().sum::<f64>() / single.len().max(1) as f64;
-        let mut sum = 0.0;
-        let summed = |deviation: &f64| {
-            sum += deviation - mean;
-            sum
-        };
-        single.iter().map(summed).collect()
-    }
 }
 
 impl Stated {
@@ -124,9 +99,8 @@ impl Stated {
         common::settings(self.positions, self.slices, self.contact)
     }
 
-    /// F_p of both gears; empty where none are stated.
-    fn cumulative(&self) -> [Vec<f64>; 2] {
-        [&self.pinion, &self.gear].map(|gear| gear.as_ref().map(StatedDeviations::cumulative).unwrap_or_default())
+    fn gears(&self) -> [Option<&StatedDeviations>; 2] {
+        [self.pinion.as_ref(), self.gear.as_ref()]
     }
 
     /// After how many base pitches everything is as before.
@@ -148,18 +122,17 @@ impl Stated {
         cycle: &MeshCycle,
         (name, design): (&str, &Design),
         torque: f64,
-        (deviations, period): (&PitchDeviations, usize),
+        (teeth, period): (&Teeth, usize),
         steps: &Steps,
     ) -> Result<Found, Failure> {
-        let pitches: Vec<isize> = (0..period.cast_signed()).collect();
-        let loading = || LoadCase::new(cycle, design, torque).with_pitch_deviations(deviations);
-        let parts: Vec<Vec<f64>> = pitches
-            .par_chunks(AT_ONCE)
-            .map(|pitches| {
+        let loading = || LoadCase::new(cycle, design, torque).with_teeth(teeth);
+        let parts: Vec<Vec<f64>> = (0..period.div_ceil(AT_ONCE))
+            .into_par_iter()
+            .map(|part| {
                 context.check_stop()?;
-                let loading = loading();
-                let of = |pitch: &isize| loading.over_pitch(deviations, *pitch, self.positions);
-                let found = pitches.iter().flat_map(of).collect();
+                let pitches = part * AT_ONCE..period.min((part + 1) * AT_ONCE);
+                let pitches = pitches.start.cast_signed()..pitches.end.cast_signed();
+                let found = loading().over_pitches(teeth, pitches, self.positions);
                 steps.done();
                 Ok::<Vec<f64>, Failure>(found)
             })
@@ -185,7 +158,7 @@ impl Stage for Stated {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        vec![summary().schema(), spectrum().schema(), curve().schema()]
+        vec![summary().schema(), spectrum().schema(), curve().schema(), flanks().schema()]
     }
 
     fn keys(&self, _table: &str, column: &str, of: KeysOf) -> Option<Vec<Cell>> {
@@ -204,7 +177,8 @@ impl Stage for Stated {
         let designs = ahead.rows(names::designs::TABLE, names::designs::TABLE);
         let curves = designs.times(RowCount::exact(self.torque.len()));
         // Nobody knows yet how many teeth there are but those that are stated: a usual ratio, and no common factor.
-        let period = hunting_period(match self.cumulative().map(|of| u32::try_from(of.len()).unwrap_or(u32::MAX)) {
+        let teeth = self.gears().map(|gear| gear.and_then(StatedDeviations::teeth).unwrap_or(0));
+        let period = hunting_period(match teeth.map(|teeth| u32::try_from(teeth).unwrap_or(u32::MAX)) {
             [0, 0] => [30, 61],
             [pinion, 0] => [pinion, pinion.saturating_mul(2).saturating_add(1)],
             [0, gear] => [(gear / 2).saturating_sub(1), gear],
@@ -212,12 +186,20 @@ impl Stage for Stated {
         });
         let positions = curves.times(RowCount::about(period.saturating_mul(self.positions)));
         let orders = curves.times(RowCount::about(period.saturating_mul(self.harmonics)));
+        // The curve that is worked on, and its transform.
+        let curve_bytes = (period.saturating_mul(self.positions) as u64).saturating_mul(13 * 8);
+        let kept_bytes =
+            |table: &str, rows: RowCount| if demand.table(table) { rows.count.saturating_mul(8) } else { 0 };
+        let kept_bytes = kept_bytes(tables::CURVE, positions).saturating_add(kept_bytes(tables::SPECTRUM, orders));
+        let traces: usize = self.gears().into_iter().flatten().map(StatedDeviations::traces).sum();
+        let times = common::solve_times(self.settings()) * if traces > 0 { TRACED_SOLVES } else { 1.0 };
         Estimate::new(true)
-            .work(&Work::of(&CONTACT_SOLVES, positions.index()), common::solve_times(self.settings()))
-            .holding(positions.count.saturating_mul(8 * 8))
+            .work(&Work::of(&CONTACT_SOLVES, positions.index()), times)
+            .holding(curve_bytes.saturating_add(kept_bytes))
             .rows(demand, summary().schema(), curves)
             .columns(demand, spectrum().schema(), orders)
             .columns(demand, curve().schema(), positions)
+            .rows(demand, flanks().schema(), RowCount::at_most(2 * traces))
     }
 
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
@@ -225,6 +207,9 @@ impl Stage for Stated {
     }
 
     fn refuses(&self, inputs: &Inputs) -> Result<(), Failure> {
+        if inputs.ports.contains_key(names::PAIR_PORT) {
+            OfPair::new(&pair::of(inputs)?, self.gears())?;
+        }
         common::refused_cycle(inputs, &self.stiffness, self.settings())
     }
 
@@ -232,13 +217,12 @@ impl Stage for Stated {
         let failed = |error: TableError| Failure::new(error.to_string());
         let (pair, cycle) = common::mesh_cycle(inputs, self.settings())?;
         let period = self.period(&pair)?;
-        let cumulative = self.cumulative();
-        let deviations = PitchDeviations::new(&pair, [&cumulative[0], &cumulative[1]])
-            .map_err(|why| Failure::new(why.to_string()))?;
+        let stated = OfPair::new(&pair, self.gears())?;
         let named = designs::of(inputs, names::designs::TABLE, modification::members())?;
         let mut tasks: Vec<(String, Design, f64)> = Vec::new();
         for named in &named {
             let design = named.built(&pair)?;
+            stated.fit(&named.name, &design)?;
             tasks.extend(self.torque.iter().map(|torque| (named.name.clone(), design.clone(), *torque)));
         }
         tasks.sort_by(|a, b| a.0.cmp(&b.0).then(a.2.total_cmp(&b.2)));
@@ -246,12 +230,14 @@ impl Stage for Stated {
         let steps = Steps::new(context, tasks.len().saturating_mul(chunks));
         let mut cases: Vec<Case> = Vec::with_capacity(tasks.len());
         for (name, design, torque) in tasks {
-            let found = self.answer(context, &cycle, (&name, &design), torque, (&deviations, period), &steps)?;
+            let found = self.answer(context, &cycle, (&name, &design), torque, (&stated.teeth, period), &steps)?;
             let plain = LoadCase::new(&cycle, &design, torque).peak_to_peak();
             let orders = period.saturating_mul(self.harmonics);
             let orders = if context.demand.table(tables::SPECTRUM) { orders } else { 0 };
             let amplitudes = amplitudes(&found.errors, orders.min(found.errors.len() / 2));
-            cases.push(Case { name, torque, found, plain, amplitudes, cumulative: cumulative.clone() });
+            // A curve may be as large as memory: what nobody asks for goes.
+            let keeps_curve = context.demand.table(tables::CURVE);
+            cases.push(Case::new((name, torque), (plain, stated.deviations), found, amplitudes, keeps_curve));
         }
         context.work.add(&cycle.work());
         let teeth = [Side::Pinion, Side::Gear].map(|side| pair.side(side).specification.teeth);
@@ -263,6 +249,9 @@ impl Stage for Stated {
         if context.demand.table(tables::CURVE) {
             let rows = cases.iter().flat_map(Row::all);
             tables.push(curve().table_of(&rows).map_err(failed)?);
+        }
+        if context.demand.table(tables::FLANKS) {
+            tables.push(flanks().table(&stated.evaluated()).map_err(failed)?);
         }
         Ok(tables)
     }

@@ -6,6 +6,7 @@
 mod charts;
 
 use crate::stage::designs::{self, Elements, NamedDesign};
+use crate::stage::evaluated::{self, Evaluated};
 use crate::stage::{
     Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Port, RowCount, Stage, names, pair,
 };
@@ -14,7 +15,7 @@ use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure, Faults};
 use declare::record::Record;
 use gearmesh::gear::geometry::Side;
-use gearmesh::gear::modification::{self, Design, measured};
+use gearmesh::gear::modification::{self, Design};
 use studygraph::table::columns::Columns;
 use studygraph::table::data::{Cell, Table, TableError};
 use studygraph::table::schema::{Column, Schema};
@@ -149,45 +150,19 @@ fn parameter_rows<'a>(rows: &'a [ResolvedRow<'a>]) -> Vec<ParameterRow<'a>> {
 /// What a measured trace of a modification comes to.
 struct EvaluatedRow<'a> {
     of: &'a ResolvedRow<'a>,
-    /// `profile` or `helix`.
-    trace: &'static str,
-    /// In the order of [`measured::PROFILE`].
-    values: [f64; 6],
+    evaluated: Evaluated,
 }
 
 fn evaluated<'a>() -> Columns<EvaluatedRow<'a>> {
     let description = "What each measured trace comes to after ISO 1328-1:2013, of a grid those in the middle of its other way; positive \
                        where there is more material than designed.";
-    of_modification(Columns::new(EVALUATED, description), |row: &EvaluatedRow<'a>| row.of)
-        .text("trace", "Along which way: profile or helix.", |row| row.trace)
-        .key()
-        .float("start", "mm", "Where the evaluation starts: roll length of a profile, z of a helix.", |row| {
-            row.values[0]
-        })
-        .float("end", "mm", "Where the evaluation ends.", |row| row.values[1])
-        .float(
-            "slope",
-            "um",
-            "Slope deviation f_Hα or f_Hβ, over the whole of the active flank or of the face.",
-            |row| row.values[2],
-        )
-        .float("form", "um", "Form deviation f_fα or f_fβ.", |row| row.values[3])
-        .float("total", "um", "Total deviation F_α or F_β.", |row| row.values[4])
-        .float("crowning", "um", "Height C_α or C_β of the mean parabola over its chord.", |row| row.values[5])
-        .on_demand()
+    let columns = of_modification(Columns::new(EVALUATED, description), |row: &EvaluatedRow<'a>| row.of);
+    evaluated::columns(columns, |row| &row.evaluated).on_demand()
 }
 
 fn evaluated_rows<'a>(rows: &'a [ResolvedRow<'a>]) -> Vec<EvaluatedRow<'a>> {
     let of = |row: &'a ResolvedRow<'a>| {
-        let trace = |trace: &'static str, names: [&'static str; 6]| {
-            let value = |name: &str| row.values.iter().find(|(given, _)| *given == name).map(|(_, value)| *value);
-            let mut values = [0.0; 6];
-            for (slot, name) in values.iter_mut().zip(names) {
-                *slot = value(name).filter(|value| value.is_finite())?;
-            }
-            Some(EvaluatedRow { of: row, trace, values })
-        };
-        [trace("profile", measured::PROFILE), trace("helix", measured::HELIX)].into_iter().flatten()
+        Evaluated::all(&row.values).into_iter().map(move |evaluated| EvaluatedRow { of: row, evaluated })
     };
     rows.iter().flat_map(of).collect()
 }

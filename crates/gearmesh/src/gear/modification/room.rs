@@ -3,7 +3,7 @@
 //! Must not know: any single family, load.
 
 use super::flank::Flank;
-use super::{Design, Gears, Modification};
+use super::{Design, Gears, Modification, NamedModification};
 use crate::gear::geometry::{GearPair, Side};
 use declare::error::Diagnostic;
 
@@ -11,6 +11,21 @@ use declare::error::Diagnostic;
 const LOOKS: u32 = 16;
 
 impl Design {
+    /// What both designs take off together.
+    ///
+    /// # Errors
+    /// When that is more than half of a tooth.
+    pub fn with(&self, other: &Self, pair: &GearPair) -> Result<Self, Diagnostic> {
+        let both = |one: &[NamedModification], other: &[NamedModification]| [one, other].concat();
+        let whole = Self {
+            pinion: both(&self.pinion, &other.pinion),
+            gear: both(&self.gear, &other.gear),
+            tilt: self.tilt + other.tilt,
+        };
+        whole.check_rooms(Gears::Both, pair)?;
+        Ok(whole)
+    }
+
     /// Refuses a design that takes more than half of a tooth.
     pub(super) fn check_rooms(&self, gears: Gears, pair: &GearPair) -> Result<(), Diagnostic> {
         gears.sides().iter().try_for_each(|side| self.check_room(*side, pair))

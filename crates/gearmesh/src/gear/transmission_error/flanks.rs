@@ -22,6 +22,10 @@ pub(super) struct Flanks<'a> {
     pub(super) face: Face<'a>,
     /// Whether the face differs from position to position.
     pub(super) is_surface: bool,
+    /// Whether the face is the same on either side of its middle.
+    pub(super) is_even: bool,
+    /// Of a surface that is a sum of profiles and leads: all sections have the gaps of the middle, and what their leads take off.
+    is_sum: bool,
     /// In the middle of the face.
     middle: FaceSection<'a>,
     /// Of a surface those of all slices of the face, or of all its strips; otherwise none.
@@ -45,19 +49,32 @@ struct FaceSection<'a> {
 
 impl<'a> Flanks<'a> {
     pub(super) fn new(cycle: &'a MeshCycle, design: &'a Design) -> Self {
-        let section = |(share, z): (f64, f64)| FaceSection::new(cycle, design, share, z, design.lead(z));
+        Self::of(cycle, design, design.varies_over_surface(), design.lead_is_even())
+    }
+
+    /// Of a design that is looked at as one that varies over the surface, or is not even, though it may be less than that.
+    pub(super) fn of(cycle: &'a MeshCycle, design: &'a Design, is_surface: bool, is_even: bool) -> Self {
+        let is_sum = is_surface && !design.varies_over_surface();
+        let section = |(share, z): (f64, f64)| {
+            let lead = design.lead(z);
+            if is_sum {
+                return FaceSection { share, z, lead, gaps: None, copies: Piecewise::default() };
+            }
+            FaceSection::new(cycle, design, share, z, lead)
+        };
         let middle = FaceSection::new(cycle, design, 1.0, 0.0, 0.0);
-        if !design.varies_over_surface() {
+        if !is_surface {
             let face = Face::new(design, cycle.face_width, &cycle.slices);
-            return Self { cycle, face, is_surface: false, middle, sections: Vec::new() };
+            return Self { cycle, face, is_surface, is_even, is_sum, middle, sections: Vec::new() };
         }
         let half = 0.5 * cycle.face_width;
         let places = match &cycle.across {
-            Some(across) => places_in(&strips(cycle, design.lead_is_even()), &across.rule),
+            Some(across) => places_in(&strips(cycle, is_even), &across.rule),
             None => Face::places(design, [-half, half], &cycle.slices),
         };
         let sections = places.into_iter().map(section).collect();
-        let mut flanks = Self { cycle, face: Face::flat(&cycle.slices), is_surface: true, middle, sections };
+        let face = Face::flat(&cycle.slices);
+        let mut flanks = Self { cycle, face, is_surface, is_even, is_sum, middle, sections };
         flanks.face = flanks.face_at(cycle.pair.start_of_contact);
         flanks
     }
@@ -104,6 +121,9 @@ impl<'a> Flanks<'a> {
 
     /// The same without quick copies.
     pub(super) fn searched(&self, s: f64) -> Option<f64> {
+        if self.is_sum {
+            return self.middle.searched(s).map(|gap| gap + self.least_lead());
+        }
         if self.is_surface {
             return self
                 .sections
@@ -123,12 +143,31 @@ impl<'a> Flanks<'a> {
     /// Out of the way of what most designs need.
     #[cold]
     fn least_gap(&self, s: f64) -> Option<f64> {
+        if self.is_sum {
+            return self.middle.gap(s).map(|gap| gap + self.least_lead());
+        }
         self.sections.iter().filter_map(|section| section.deviation(s)).reduce(f64::min)
+    }
+
+    /// Of all sections.
+    fn least_lead(&self) -> f64 {
+        self.sections.iter().map(|section| section.lead).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The deviations of some sections of a surface at a path position, with their shares of the width.
+    fn deviations(&self, sections: &[FaceSection], s: f64) -> Vec<(f64, f64)> {
+        if self.is_sum {
+            let gap = self.middle.gap(s);
+            let of = |section: &FaceSection| (section.share, gap.map_or(0.0, |gap| gap + section.lead));
+            return sections.iter().map(of).collect();
+        }
+        let of = |section: &FaceSection| (section.share, section.deviation(s).unwrap_or(0.0));
+        sections.iter().map(of).collect()
     }
 
     /// The face of a surface at a path position, above its gap there.
     pub(super) fn face_at(&self, s: f64) -> Face<'a> {
-        Face::of_slices(deviations(&self.sections, s), self.gap(s).unwrap_or(0.0), &self.cycle.slices)
+        Face::of_slices(self.deviations(&self.sections, s), self.gap(s).unwrap_or(0.0), &self.cycle.slices)
     }
 
     /// z of the smallest deviation at a path position; none where the flanks run parallel.
@@ -150,7 +189,7 @@ impl<'a> Flanks<'a> {
     /// The deviations of a surface within each of `count` strips, at a path position.
     pub(super) fn strips_at(&self, s: f64, count: usize) -> impl Iterator<Item = Face<'a>> {
         self.sections.chunks(self.sections.len() / count).map(move |sections| {
-            let mut slices = deviations(sections, s);
+            let mut slices = self.deviations(sections, s);
             for slice in &mut slices {
                 slice.0 *= count as f64;
             }
@@ -168,7 +207,8 @@ impl<'a> Flanks<'a> {
             (pitches - pitches.floor()) * pair.base_pitch
         };
         let mut folded: Vec<f64> = Vec::new();
-        let sections = if self.is_surface { &mut self.sections[..] } else { std::slice::from_mut(&mut self.middle) };
+        let is_each = self.is_surface && !self.is_sum;
+        let sections = if is_each { &mut self.sections[..] } else { std::slice::from_mut(&mut self.middle) };
         for section in sections {
             if let Some(gaps) = &section.gaps {
                 let breaks = gaps.breaks(window);
@@ -189,12 +229,6 @@ fn places_in(strips: &[[f64; 2]], rule: &Rule) -> Vec<(f64, f64)> {
     let share = 1.0 / strips.len() as f64;
     let within = |strip: &[f64; 2]| Face::places(&Design::default(), *strip, rule);
     strips.iter().flat_map(within).map(|(part, z)| (part * share, z)).collect()
-}
-
-/// Of each section, with its share of the width.
-fn deviations(sections: &[FaceSection], s: f64) -> Vec<(f64, f64)> {
-    let of = |section: &FaceSection| (section.share, section.deviation(s).unwrap_or(0.0));
-    sections.iter().map(of).collect()
 }
 
 /// The strips into which the face is cut where slices hold each other \[m\]; of an even face those of one half.

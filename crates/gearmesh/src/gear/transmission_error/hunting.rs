@@ -1,12 +1,33 @@
 //! Transmission error over a hunting period: until the same teeth meet again, lcm(z1, z2) base pitches of mesh.
 //!
 //! Pitch deviations set each pair of teeth apart by its own amount, the same from A to E: a pair of pinion tooth i and gear tooth
-//! j stands (F_p,i − F_p,j) cos α farther from contact. Flanks themselves are alike. Source: ISO 1328-1:2013, 3.2 (pitch deviations)
-//! and Annex C (transmission deviation, single flank). Must not know: where deviations come from, what is done with the values.
+//! j stands (F_p,i − F_p,j) cos α farther from contact. A pair of which a tooth has a flank of its own has a gap of its own, found as
+//! that of a design is: bent contact and corners included. Teeth yield and are placed as those of the design. Source: ISO
+//! 1328-1:2013, 3.2 (pitch deviations) and Annex C (transmission deviation, single flank). Must not know: where deviations come
+//! from, what is done with the values.
 
+mod flanks;
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::apart::Apart;
+use super::flanks::Flanks;
 use super::load_case::LoadCase;
 use crate::gear::geometry::{GearPair, Side};
-use crate::numeric::complementarity::PerSpring;
+use crate::gear::modification::Design;
+use crate::numeric::complementarity::MOST_SPRINGS;
+
+pub use flanks::ToothFlanks;
+
+/// What single teeth of both gears have of their own.
+#[derive(Clone, Debug)]
+pub struct Teeth {
+    /// Their places.
+    pub pitch: PitchDeviations,
+    /// Their flanks.
+    pub flanks: ToothFlanks,
+}
 
 /// By how much the teeth of both gears are off their places, as far as the mate feels it.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +47,37 @@ pub struct NotOfEachTooth {
     pub teeth: u32,
     /// How many there are.
     pub stated: usize,
+}
+
+/// Why a tooth is not one of a gear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the {} has {teeth} teeth, and no tooth {tooth}", side.name())]
+pub struct NoSuchTooth {
+    /// Of which gear.
+    pub side: Side,
+    /// z.
+    pub teeth: u32,
+    /// Which one, from 1.
+    pub tooth: usize,
+}
+
+impl Teeth {
+    /// Between what the distances of all pairs of teeth are beside those of the design's flanks \[m\].
+    fn between(&self) -> [f64; 2] {
+        let of = |end: usize, pick: fn(f64, f64) -> f64, start: f64| {
+            let of_gear = |side: usize| {
+                let apart = &self.pitch.apart[side];
+                let teeth = 0..apart.len().max(self.flanks.teeth(side));
+                let of_tooth = |tooth: usize| apart[tooth % apart.len()] + self.flanks.range(side, tooth)[end];
+                teeth.map(of_tooth).fold(start, pick)
+            };
+            of_gear(0) + of_gear(1)
+        };
+        let [least, most] = [of(0, f64::min, f64::INFINITY), of(1, f64::max, f64::NEG_INFINITY)];
+        // Where pairs touch at the highest place of the face only, the approach is as much larger as the others are lower.
+        let uneven = if self.flanks.vary_across() { 2.0 * (most - least) } else { 0.0 };
+        [least, most + uneven]
+    }
 }
 
 impl PitchDeviations {
@@ -58,14 +110,6 @@ impl PitchDeviations {
         let tooth = |apart: &[f64]| apart[pair.rem_euclid(apart.len().cast_signed()).cast_unsigned()];
         tooth(&self.apart[0]) + tooth(&self.apart[1])
     }
-
-    /// Between what the distances of all pairs of teeth are \[m\].
-    fn range(&self) -> [f64; 2] {
-        let of = |pick: fn(f64, f64) -> f64, start: f64| {
-            self.apart.iter().map(|apart| apart.iter().copied().fold(start, pick)).sum()
-        };
-        [of(f64::min, f64::INFINITY), of(f64::max, f64::NEG_INFINITY)]
-    }
 }
 
 /// lcm(z1, z2): after how many base pitches of mesh the same teeth meet again.
@@ -79,13 +123,23 @@ pub fn hunting_period(teeth: [u32; 2]) -> usize {
 }
 
 impl LoadCase<'_> {
-    /// The same with pitch deviations, of which [`LoadCase::over_pitch`] takes those of the pairs in contact.
+    /// The same design with teeth that differ, of which [`LoadCase::over_pitches`] takes the pairs in contact. Without friction.
     #[must_use]
-    pub fn with_pitch_deviations(self, deviations: &PitchDeviations) -> Self {
-        self.with_distances_between(deviations.range())
+    pub fn with_teeth(self, teeth: &Teeth) -> Self {
+        let is_surface = self.flanks.is_surface || teeth.flanks.vary_across();
+        let is_even = self.flanks.is_even && teeth.flanks.are_even();
+        let is_same = is_surface == self.flanks.is_surface && is_even == self.flanks.is_even;
+        // All pairs have faces of one kind.
+        let loading = if is_same {
+            self
+        } else {
+            let flanks = Flanks::of(self.cycle, self.design, is_surface, is_even);
+            Self::of_flanks(flanks, self.design, self.force)
+        };
+        loading.with_distances_between(teeth.between())
     }
 
-    /// The same for pairs that are farther apart than their flanks say, by amounts between these \[m\].
+    /// The same for pairs that are farther apart than the design's flanks say, by amounts between these \[m\].
     fn with_distances_between(self, distances_between: [f64; 2]) -> Self {
         let mut other = Self { distances_between, ..self };
         if !other.touches_on_line() {
@@ -95,25 +149,42 @@ impl LoadCase<'_> {
         other
     }
 
-    /// The same with pairs so much farther apart, by their springs.
-    fn with_distances(&self, distances: PerSpring) -> Self {
-        Self { distances: Some(distances), ..self.clone() }
-    }
-
-    /// The transmission error \[m\] at `positions` equidistant positions of a base pitch of mesh, of a load case that was made
-    /// with the same deviations: from where pair number `pitch` starts contact in A on, the last position one short of where
-    /// the next does.
+    /// The transmission error \[m\] at `positions` equidistant positions of each of these base pitches of mesh, of a load case that was
+    /// made with the same teeth: pitch n goes from where pair number n starts contact in A to where the next one does, the last
+    /// position one short of that. A pair's own gaps are kept for as long as it may touch.
     #[must_use]
-    pub fn over_pitch(&self, deviations: &PitchDeviations, pitch: isize, positions: usize) -> Vec<f64> {
+    pub fn over_pitches(&self, teeth: &Teeth, pitches: Range<isize>, positions: usize) -> Vec<f64> {
         let newest = self.cycle.newest().cast_signed();
-        let apart: PerSpring = std::array::from_fn(|spring| deviations.of_pair(pitch + newest - spring.cast_signed()));
-        let here = self.with_distances(apart);
-        let step = self.cycle.period() / positions as f64;
-        let at = |index: usize| {
-            let position = step * index as f64;
-            here.state(position, self.cycle.pairs_behind(position)).transmission_error()
+        let zones = self.cycle.zones.iter();
+        let springs = zones.map(|zone| self.cycle.springs(zone.pairs)).max().unwrap_or(0);
+        let number = |pitch: isize, spring: usize| pitch + newest - spring.cast_signed();
+        let oldest = number(pitches.start, springs.saturating_sub(1));
+        let numbers = oldest..number(pitches.end, 0);
+        let designs: Vec<Option<Design>> = numbers.map(|pair| teeth.flanks.design(self.design, pair)).collect();
+        let flanks_of = |pair: isize| {
+            let design = designs.get((pair - oldest).cast_unsigned())?.as_ref()?;
+            let Flanks { cycle, is_surface, is_even, .. } = *self.flanks;
+            Some(Arc::new(Flanks::of(cycle, design, is_surface, is_even)))
         };
-        (0..positions).map(at).collect()
+        let step = self.cycle.period() / positions as f64;
+        let mut flanks: [Option<Arc<Flanks>>; MOST_SPRINGS] = Default::default();
+        let mut found = Vec::with_capacity(pitches.len().saturating_mul(positions));
+        for pitch in pitches.clone() {
+            // All but the newest pair were there a pitch ago.
+            flanks.rotate_right(1);
+            let fresh = if pitch == pitches.start { springs } else { 1 };
+            for (spring, flanks) in flanks.iter_mut().enumerate().take(fresh) {
+                *flanks = flanks_of(number(pitch, spring));
+            }
+            let distances = std::array::from_fn(|spring| teeth.pitch.of_pair(number(pitch, spring)));
+            let apart = Some(Apart { distances, flanks: flanks.clone() });
+            let here = LoadCase { apart, ..self.clone() };
+            found.extend((0..positions).map(|index| {
+                let position = step * index as f64;
+                here.state(position, self.cycle.pairs_behind(position)).transmission_error()
+            }));
+        }
+        found
     }
 }
 

@@ -4,6 +4,7 @@
 
 use std::sync::Arc;
 
+use super::apart::Apart;
 use super::count::Count;
 use super::cycle::{Elasticity, MeshCycle};
 use super::flanks::Flanks;
@@ -41,9 +42,9 @@ pub struct LoadCase<'a> {
     pub(super) positions: usize,
     /// Whether spans next to a change are cut until their nodes can follow: for what is integrated.
     pub(super) refines: bool,
-    /// How much farther apart each pair is than its flanks say, by its spring \[m\].
-    pub(super) distances: Option<PerSpring>,
-    /// Between what these may be.
+    /// What pairs have that the design does not say of all.
+    pub(super) apart: Option<Apart<'a>>,
+    /// Between what they may be farther apart by that than the design's flanks say \[m\].
     pub(super) distances_between: [f64; 2],
 }
 
@@ -118,7 +119,12 @@ impl<'a> LoadCase<'a> {
     /// counts as 0; what is not a finite number is beyond the model.
     #[must_use]
     pub fn new(cycle: &'a MeshCycle, design: &'a Design, torque: f64) -> Self {
-        let flanks = Arc::new(Flanks::new(cycle, design));
+        Self::of_flanks(Flanks::new(cycle, design), design, torque / cycle.pair.pinion.base_radius)
+    }
+
+    /// The same under the force F \[N\], between these flanks of the design.
+    pub(super) fn of_flanks(flanks: Flanks<'a>, design: &'a Design, force: f64) -> Self {
+        let (cycle, flanks) = (flanks.cycle, Arc::new(flanks));
         let face = &flanks.face;
         let sliced = Sliced::new(&flanks, design).map(Arc::new);
         // Where slices hold each other, the load of a pair is not a function of its penetration alone.
@@ -138,12 +144,11 @@ impl<'a> LoadCase<'a> {
             // Between any two nodes there are others of a spline's points: halving would go on to all of them.
             && !flanks.is_sampled();
         let regime = match sliced {
-            _ if torque <= 0.0 => Regime::Unloaded,
+            _ if force <= 0.0 => Regime::Unloaded,
             Some(sliced) => Regime::CoupledSlices(sliced),
             None if cycle.coupled() => Regime::CoupledPairs,
             None => Regime::Pairs,
         };
-        let force = torque / cycle.pair.pinion.base_radius;
         let mut load_case = Self {
             count,
             levels,
@@ -157,7 +162,7 @@ impl<'a> LoadCase<'a> {
             breaks: Arc::default(),
             positions: cycle.settings.positions,
             refines,
-            distances: None,
+            apart: None,
             distances_between: [0.0; 2],
         };
         if cycle.settings.corner_contact == CornerContact::Exact {
@@ -189,8 +194,9 @@ impl<'a> LoadCase<'a> {
         // Farther out than a pair can be loaded nothing is looked at.
         let (from, to) = (pair.start_of_contact, pair.end_of_contact);
         let inside = (0..=16).map(|index| from + (to - from) * f64::from(index) / 16.0);
-        let maximum = inside
-            .fold(0.0, |maximum: f64, s| maximum.max(self.alone(s, &mut None) + flanks.searched(s).unwrap_or(0.0)));
+        let maximum = inside.fold(0.0, |maximum: f64, s| {
+            maximum.max(self.alone(s, flanks, &mut None) + flanks.searched(s).unwrap_or(0.0))
+        });
         let outermost = |from: f64, to: f64| {
             let (mut near, mut far) = (from, to);
             for _ in 0..MOST_HALVINGS {
@@ -289,23 +295,15 @@ impl<'a> LoadCase<'a> {
     /// The gap, where the flanks come nearest; with corner contact none where they are too far apart.
     #[must_use]
     pub fn gap(&self, s: f64) -> Option<f64> {
+        self.gap_between(&self.flanks, s)
+    }
+
+    #[inline]
+    pub(super) fn gap_between(&self, flanks: &Flanks<'a>, s: f64) -> Option<f64> {
         match self.touching {
             Touching::Anywhere { window, .. } if s < window.0 || s > window.1 => None,
-            _ => self.flanks.gap(s),
+            _ => flanks.gap(s),
         }
-    }
-
-    /// Whether every pair is as far apart as its flanks say.
-    #[inline]
-    pub(super) fn is_evenly_spaced(&self) -> bool {
-        self.distances.is_none()
-    }
-
-    /// The gap of the pair that is this spring.
-    #[inline]
-    fn gap_of(&self, spring: usize, s: f64) -> Option<f64> {
-        let gap = self.gap(s)?;
-        Some(self.distances.map_or(gap, |distances| gap + distances[spring]))
     }
 
     /// Equilibrium at the cycle position τ with `pairs` inside the path of contact, the newest first.
@@ -378,8 +376,7 @@ impl<'a> LoadCase<'a> {
             return loading.unexplained_by_slices(position, pairs);
         }
         let reach = self.within_reach(position, pairs, None, &mut None);
-        let above = self.alone(reach.nearest_position(), &mut None);
-        Some(slices.unexplained(self.cycle, &reach, [self.force, above]))
+        Some(slices.unexplained(self, &reach, [self.force, self.above(&reach, &mut None)]))
     }
 
     /// Where slices hold each other: the load per width \[N/m\] of each slice of the whole face, of each pair within reach by
@@ -390,8 +387,7 @@ impl<'a> LoadCase<'a> {
             return loading.loads_of_slices(position, pairs);
         }
         let reach = self.within_reach(position, pairs, None, &mut None);
-        let above = self.alone(reach.nearest_position(), &mut None);
-        let loads = slices.line_loads(self.cycle, &reach, [self.force, above]);
+        let loads = slices.line_loads(self, &reach, [self.force, self.above(&reach, &mut None)]);
         Some(reach.springs().iter().copied().zip(loads).collect())
     }
 
@@ -415,29 +411,29 @@ impl<'a> LoadCase<'a> {
         }
         reach.count_gaps_from_the_smallest();
         if matches!(self.touching, Touching::Anywhere { .. }) && self.force > 0.0 {
-            reach.keep_nearer_than(self.alone(reach.nearest_position(), nearest));
+            reach.keep_nearer_than(self.above(&reach, nearest));
         }
         reach
     }
 
-    /// An approach that no equilibrium exceeds, from the smallest gap on, where the nearest pair is at `s`: twice that of
-    /// this pair alone. For loads λ_j of least complementary energy U, x F = Σ w_j λ_j + Σ gap_j λ_j ≤ 2 U since
+    /// An approach that no equilibrium exceeds, from the smallest gap on, where the nearest pair is at `s` and has these flanks:
+    /// twice that of this pair alone. For loads λ_j of least complementary energy U, x F = Σ w_j λ_j + Σ gap_j λ_j ≤ 2 U since
     /// approaches bend down with the load, and U ≤ F w(F) of any one pair alone.
     ///
     /// Leaves the law of that pair, if it took it.
-    pub(super) fn alone(&self, s: f64, law: &mut Option<InSeries<'a>>) -> f64 {
+    pub(super) fn alone(&self, s: f64, flanks: &Flanks<'a>, law: &mut Option<InSeries<'a>>) -> f64 {
         let alone = match &self.cycle.elasticity {
             Elasticity::Linear(stiffness) => self.force / stiffness.value(s),
             elasticity @ Elasticity::Logarithmic { .. } if self.force > 0.0 => {
                 let (Known { number, log }, plain) = (self.line_load, elasticity.plain(s));
                 if plain.holds(number) {
-                    return 2.0 * (plain.rates_at(elasticity.rates()[0], number, log)[0] + self.flanks.mean(s));
+                    return 2.0 * (plain.rates_at(elasticity.rates()[0], number, log)[0] + flanks.mean(s));
                 }
                 let law = law.insert(elasticity.series(s, None));
                 law.at_known_load(number, log).0
             }
             Elasticity::Logarithmic { .. } => 0.0,
         };
-        2.0 * (alone + self.flanks.mean(s))
+        2.0 * (alone + flanks.mean(s))
     }
 }

@@ -5,6 +5,7 @@
 //! curves, summaries and objectives come from it. Must not know: where compliances or modifications come from.
 
 mod across;
+mod apart;
 pub mod asked;
 mod change;
 mod closed;

@@ -27,8 +27,7 @@ impl<'a> LoadCase<'a> {
         };
         self.count.solves(1);
         if let Some(slices) = slices {
-            let above = self.alone(reach.nearest_position(), &mut None);
-            let (balance, peaks) = slices.balance(self.cycle, reach, [self.force, above]);
+            let (balance, peaks) = slices.balance(self, reach, [self.force, self.above(reach, &mut None)]);
             return (balance, Some(peaks));
         }
         if self.flanks.is_surface {
@@ -39,7 +38,8 @@ impl<'a> LoadCase<'a> {
 
     #[cold]
     fn balance_of_surfaces(&self, reach: &WithinReach, nearest: Option<&InSeries<'a>>) -> Balance {
-        let faces: Vec<Face> = reach.positions().iter().map(|&s| self.flanks.face_at(s)).collect();
+        let pairs = reach.springs().iter().zip(reach.positions());
+        let faces: Vec<Face> = pairs.map(|(&spring, &s)| self.flanks_of(spring).face_at(s)).collect();
         self.balance_behind(reach, nearest, Faces::Each(&faces))
     }
 

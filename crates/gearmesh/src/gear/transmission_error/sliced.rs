@@ -9,6 +9,7 @@ use std::sync::Arc;
 use super::across::Across;
 use super::cycle::{Elasticity, MeshCycle};
 use super::flanks::{Flanks, strips};
+use super::load_case::LoadCase;
 use super::within_reach::WithinReach;
 use crate::gear::contact::face::Face;
 use crate::gear::contact::slices::{Slice, Slices};
@@ -55,7 +56,7 @@ impl<'a> Sliced<'a> {
         let cycle = flanks.cycle;
         let across = cycle.across.as_ref().filter(|_| !flanks.is_flat())?;
         let count = cycle.settings.slices.max(1);
-        let places = strips(cycle, design.lead_is_even());
+        let places = strips(cycle, flanks.is_even);
         let kept = places.len();
         let stands_for = |slice: usize| if kept == count || slice == count - 1 - slice { 1.0 } else { 2.0 };
         let strips = if flanks.is_surface {
@@ -80,15 +81,16 @@ impl<'a> Sliced<'a> {
         self.stands_for.len()
     }
 
-    /// The deviations within the slices of pairs at path positions.
-    fn deviations(&self, positions: &[f64]) -> Cow<'_, Deviations<'a>> {
+    /// The deviations within the slices of the pairs within reach.
+    fn deviations(&self, loading: &LoadCase<'a>, reach: &WithinReach) -> Cow<'_, Deviations<'a>> {
         if !self.flanks.is_surface {
             return Cow::Borrowed(&self.strips);
         }
         let mut found = Deviations::default();
-        for &s in positions {
-            let gap = self.flanks.gap(s).unwrap_or(0.0);
-            let faces = self.flanks.strips_at(s, self.count());
+        for (&spring, &s) in reach.springs().iter().zip(reach.positions()) {
+            let flanks = loading.flanks_of(spring);
+            let gap = flanks.gap(s).unwrap_or(0.0);
+            let faces = flanks.strips_at(s, self.count());
             let from = found.faces.len();
             found.faces.extend(faces);
             found.lows.extend(found.faces[from..].iter().map(|face| face.offset - gap));
@@ -100,12 +102,12 @@ impl<'a> Sliced<'a> {
     /// over a slice. `above`: an approach that is large enough.
     pub(super) fn balance(
         &self,
-        cycle: &MeshCycle,
+        loading: &LoadCase<'a>,
         reach: &WithinReach,
         [force, above]: [f64; 2],
     ) -> (Balance, PerSpring) {
         let count = self.count();
-        let (found, smallest) = self.slices(cycle, reach, [force, above]);
+        let (found, smallest) = self.slices(loading, reach, [force, above]);
         let (approach, slope) = (found.approach + smallest, found.slope);
         let mut balance = Balance { approach, loads: [0.0; MOST_SPRINGS], penetration: [0.0; MOST_SPRINGS], slope };
         let mut peaks = [0.0; MOST_SPRINGS];
@@ -121,8 +123,8 @@ impl<'a> Sliced<'a> {
     }
 
     /// The load per width of each slice of the whole face, as a mean over it, pair by pair.
-    pub(super) fn line_loads(&self, cycle: &MeshCycle, reach: &WithinReach, known: [f64; 2]) -> Vec<Vec<f64>> {
-        let (found, _) = self.slices(cycle, reach, known);
+    pub(super) fn line_loads(&self, loading: &LoadCase<'a>, reach: &WithinReach, known: [f64; 2]) -> Vec<Vec<f64>> {
+        let (found, _) = self.slices(loading, reach, known);
         let looked_at = |slice: usize| if slice < self.count() { slice } else { self.whole - 1 - slice };
         let of_pair =
             |loads: &[f64]| (0..self.whole).map(looked_at).map(|slice| loads[slice] / self.widths[slice]).collect();
@@ -130,10 +132,16 @@ impl<'a> Sliced<'a> {
     }
 
     /// Equilibrium of all slices, pair by pair, its approach counted from the smallest gap of a slice, and that gap.
-    fn slices(&self, cycle: &MeshCycle, reach: &WithinReach, [force, above]: [f64; 2]) -> (many_springs::Balance, f64) {
+    fn slices(
+        &self,
+        loading: &LoadCase<'a>,
+        reach: &WithinReach,
+        [force, above]: [f64; 2],
+    ) -> (many_springs::Balance, f64) {
+        let cycle = loading.cycle;
         let (matrix, own) = self.matrix(cycle, reach.springs(), reach.positions());
         // The lowest place of the face is one of a slice but for rounding.
-        let strips = self.deviations(reach.positions());
+        let strips = self.deviations(loading, reach);
         let mut behind = strips.behind(reach.gaps(), self.count());
         let smallest = behind.iter().copied().fold(f64::INFINITY, f64::min);
         for gap in &mut behind {
@@ -145,21 +153,27 @@ impl<'a> Sliced<'a> {
 
     /// The load over the force that a slice carries and its penetration, recomputed from loads, gaps and influences, does
     /// not explain, and how much of it rounding of what is subtracted is worth: of the slice where most of that is used up.
-    pub(super) fn unexplained(&self, cycle: &MeshCycle, reach: &WithinReach, [force, above]: [f64; 2]) -> [f64; 2] {
-        self.unexplained_in(cycle, reach, force, &self.slices(cycle, reach, [force, above]))
+    pub(super) fn unexplained(
+        &self,
+        loading: &LoadCase<'a>,
+        reach: &WithinReach,
+        [force, above]: [f64; 2],
+    ) -> [f64; 2] {
+        self.unexplained_in(loading, reach, force, &self.slices(loading, reach, [force, above]))
     }
 
     /// The same in a balance whose smallest gap is given with it.
     fn unexplained_in(
         &self,
-        cycle: &MeshCycle,
+        loading: &LoadCase<'a>,
         reach: &WithinReach,
         force: f64,
         (found, smallest): &(many_springs::Balance, f64),
     ) -> [f64; 2] {
+        let cycle = loading.cycle;
         let size = reach.gaps().len() * self.count();
         let (matrix, own) = self.matrix(cycle, reach.springs(), reach.positions());
-        let strips = self.deviations(reach.positions());
+        let strips = self.deviations(loading, reach);
         let behind = strips.behind(reach.gaps(), self.count());
         let slices = self.springs(cycle, reach.positions(), &own, &strips.faces);
         let mut worst = [0.0, 1.0];

@@ -87,4 +87,8 @@ impl WithinReach {
     pub(super) fn nearest_position(&self) -> f64 {
         self.positions[self.nearest]
     }
+
+    pub(super) fn nearest_spring(&self) -> usize {
+        self.springs[self.nearest]
+    }
 }

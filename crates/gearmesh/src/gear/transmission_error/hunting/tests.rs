@@ -2,7 +2,9 @@
 
 #![allow(clippy::float_cmp)] // where a result must be exact, that is what is asked
 
-use super::{PitchDeviations, hunting_period};
+mod traces;
+
+use super::{PitchDeviations, Teeth, ToothFlanks, hunting_period};
 use crate::gear::contact::CornerContact;
 use crate::gear::fixtures::{constant, coupled, pair};
 use crate::gear::geometry::GearPair;
@@ -26,8 +28,13 @@ fn of_both(pair: &GearPair) -> [Vec<f64>; 2] {
     [scattered(pair.pinion.specification.teeth, 1), scattered(pair.gear.specification.teeth, 2)]
 }
 
-fn case<'a>(cycle: &'a MeshCycle, design: &'a Design, force: f64, deviations: &PitchDeviations) -> LoadCase<'a> {
-    LoadCase::new(cycle, design, force * cycle.pair.pinion.base_radius).with_pitch_deviations(deviations)
+/// Teeth that are off their places, and alike.
+fn off(pair: &GearPair, cumulative: [&[f64]; 2]) -> Teeth {
+    Teeth { pitch: PitchDeviations::new(pair, cumulative).unwrap(), flanks: ToothFlanks::default() }
+}
+
+fn case<'a>(cycle: &'a MeshCycle, design: &'a Design, force: f64, teeth: &Teeth) -> LoadCase<'a> {
+    LoadCase::new(cycle, design, force * cycle.pair.pinion.base_radius).with_teeth(teeth)
 }
 
 /// Tier: closed form; springs of one stiffness behind steps: of two pairs δ = (F/k + e + e')/2, or F/k + the smaller one where
@@ -38,18 +45,19 @@ fn springs_behind_steps_share_the_load() {
     let (cycle, design) =
         (MeshCycle::new(&pair, &constant(&pair, STIFFNESS), Settings::default()).unwrap(), Design::default());
     let [pinion, gear] = of_both(&pair);
-    let deviations = PitchDeviations::new(&pair, [&pinion, &gear]).unwrap();
+    let off = off(&pair, [&pinion, &gear]);
     let cosine = pair.pinion.specification.pressure_angle.cos();
     let teeth = [pinion.len(), gear.len()];
     let period = hunting_period([pair.pinion.specification.teeth, pair.gear.specification.teeth]);
     let (mut shared, mut alone) = (0, 0);
     for force in [200.0, 1867.0, 20_000.0] {
-        let loading = case(&cycle, &design, force, &deviations);
+        let loading = case(&cycle, &design, force, &off);
         for pitch in 0..period {
             let apart = |number: usize| cosine * (pinion[number % teeth[0]] - gear[number % teeth[1]]);
             // The pair before: at the beginning of the period it is the last one of it.
             let (newest, older) = (apart(pitch), apart(pitch + period - 1));
-            for (index, found) in loading.over_pitch(&deviations, pitch.cast_signed(), 8).into_iter().enumerate() {
+            let at = pitch.cast_signed();
+            for (index, found) in loading.over_pitches(&off, at..at + 1, 8).into_iter().enumerate() {
                 let single = cycle.pairs_behind(cycle.period() * index as f64 / 8.0) == 1;
                 let both = 0.5 * (force / STIFFNESS + newest + older);
                 let one = force / STIFFNESS + newest.min(older);
@@ -82,8 +90,8 @@ fn a_gear_that_is_turned_shifts_the_error() {
         let cycle = MeshCycle::new(&pair, &coupled(), settings).unwrap();
         for force in [0.0, 1867.0] {
             let of = |cumulative: [&[f64]; 2], pitch: isize| {
-                let deviations = PitchDeviations::new(&pair, cumulative).unwrap();
-                case(&cycle, &design, force, &deviations).over_pitch(&deviations, pitch, 16)
+                let off = off(&pair, cumulative);
+                case(&cycle, &design, force, &off).over_pitches(&off, pitch..pitch + 1, 16)
             };
             let plain = of([&[], &[]], 0);
             let own = LoadCase::new(&cycle, &design, force * pair.pinion.base_radius);
@@ -115,15 +123,15 @@ fn without_load_the_nearest_pair_touches() {
     let settings = Settings { corner_contact: CornerContact::Exact, ..Settings::default() };
     let (cycle, design) = (MeshCycle::new(&pair, &constant(&pair, STIFFNESS), settings).unwrap(), Design::default());
     let [pinion, gear] = of_both(&pair).map(|of| of.into_iter().map(|value| 5.0 * value).collect::<Vec<_>>());
-    let deviations = PitchDeviations::new(&pair, [&pinion, &gear]).unwrap();
-    let loading = case(&cycle, &design, 0.0, &deviations);
+    let off = off(&pair, [&pinion, &gear]);
+    let loading = case(&cycle, &design, 0.0, &off);
     let mut outside = 0;
     for pitch in 0..60 {
-        for (index, found) in loading.over_pitch(&deviations, pitch, 32).into_iter().enumerate() {
+        for (index, found) in loading.over_pitches(&off, pitch..pitch + 1, 32).into_iter().enumerate() {
             let position = cycle.period() * index as f64 / 32.0;
             let at = |ahead: isize| {
                 let s = cycle.path_position(position, (ahead + 1).cast_unsigned());
-                Some((loading.gap(s)? + deviations.of_pair(pitch - ahead), s))
+                Some((loading.gap(s)? + off.pitch.of_pair(pitch - ahead), s))
             };
             let (exact, s) = (-1..3).filter_map(at).min_by(|one, two| one.0.total_cmp(&two.0)).unwrap();
             outside += usize::from(s < pair.start_of_contact || s > pair.end_of_contact);

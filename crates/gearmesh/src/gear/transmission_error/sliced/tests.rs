@@ -197,17 +197,17 @@ fn loads_balance_and_slices_fulfil_complementarity() {
                 let positions = springs.map(|spring| cycle.path_position(1e-3, spring));
                 let reach = within_reach((0..3).map(|pair| (springs[pair], positions[pair], gaps[pair])));
                 let given = [loading.force, 10.0 * torque / TORQUE * 1e-5 + 1e-5];
-                let (found, smallest) = sliced.slices(&cycle, &reach, given);
+                let (found, smallest) = sliced.slices(&loading, &reach, given);
                 let (matrix, _) = sliced.matrix(&cycle, &springs, &positions);
                 // The check of it finds nothing, and just the part of a load that is moved on purpose, with what the others
                 // give way to it.
-                let [value, scale] = sliced.unexplained(&cycle, &reach, given);
+                let [value, scale] = sliced.unexplained(&loading, &reach, given);
                 assert!(value < 1e-12 * scale, "{value:e} {scale:e}");
                 let loaded = (0..found.loads.len()).max_by(|a, b| found.loads[*a].total_cmp(&found.loads[*b])).unwrap();
                 let mut moved = found.clone();
                 moved.loads[loaded] *= 1.0 + 1e-3;
                 let force = loading.force;
-                let [value, _] = sliced.unexplained_in(&cycle, &reach, force, &(moved, smallest));
+                let [value, _] = sliced.unexplained_in(&loading, &reach, force, &(moved, smallest));
                 let by = 1e-3 * found.loads[loaded] / force;
                 assert!(value > 0.9 * by && value < 3.0 * by, "{value:e} {by:e}");
                 let (count, size) = (sliced.count(), 3 * sliced.count());
@@ -359,7 +359,7 @@ fn a_mirrored_lead_gives_the_mirrored_loads() {
             let sliced = loading.slices().unwrap();
             let pair = |spring: usize| (spring, cycle.path_position(1e-3, spring), 1e-6 * spring as f64);
             let reach = within_reach((0..2).map(pair));
-            sliced.slices(&cycle, &reach, [loading.force, 4e-5]).0
+            sliced.slices(loading, &reach, [loading.force, 4e-5]).0
         });
         for pair in 0..2 {
             for slice in 0..15 {
