@@ -6,15 +6,15 @@
 use super::document::{Content, KeyValue, Node, nothing, parse};
 use super::notation;
 use super::overrides::{self, Stages};
-use super::quantity::Measure;
 use super::quantity::interval::Interval;
+use super::quantity::{Measure, any_quantity};
 use super::unknown;
 use super::varied;
 use super::words::{self, alternatives, quote};
 use declare::error::{Diagnostic, Place, suggest};
 use declare::parameter::{Field, Member, Presence, Shape, Span};
 use declare::record::{PlacedValue, Record, Value, Variant};
-use declare::units::{UnitError, parse_quantity, parse_unit, split_quantity};
+use declare::units::{parse_unit, split_quantity};
 
 /// The name of a stage that a field refers to.
 #[derive(Clone, Debug)]
@@ -433,32 +433,4 @@ pub(super) fn integer(
 
 fn is_digits(text: &str) -> bool {
     !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
-}
-
-fn any_quantity(name: &str, node: &Node) -> Result<Value, Diagnostic> {
-    let text = scalar(name, node, &Shape::AnyQuantity)?;
-    if let Some(help) = notation::help(text) {
-        let message = format!("{} is not a number as a study has it; {name} needs one", quote(text));
-        return Err(Diagnostic::new(message).at(node.place).help(notation::with_reading(help, text, &|_| 0.0)));
-    }
-    let read = parse_quantity(text).map_err(|error| {
-        let unit = quote(split_quantity(text).1);
-        let (message, help) = match error {
-            UnitError::Ambiguous { readings, .. } => (
-                format!("{unit} in {} can be read in two ways", quote(text)),
-                words::unit_readings(text, &readings, None),
-            ),
-            UnitError::Malformed { why, instead, .. } => (
-                format!("{unit} in {} cannot be read as a unit: {why}", quote(text)),
-                words::unit_instead(text, instead.as_deref()),
-            ),
-            _ => (
-                format!("{} is not a number with a unit that is known; {name} needs one", quote(text)),
-                "units are written like `um`, `N m`, `N/(mm um)` or `1/um^2`".to_owned(),
-            ),
-        };
-        Diagnostic::new(message).at(node.place).help(help)
-    })?;
-    let unit = split_quantity(text).1.to_owned();
-    Ok(Value::AnyQuantity { value: read.value + 0.0, dimension: read.dimension, unit })
 }

@@ -5,6 +5,7 @@
 
 pub mod interval;
 
+use super::decode::scalar;
 use super::document::{Content, Node};
 use super::notation;
 use super::unknown;
@@ -350,4 +351,36 @@ fn between(from: &Node, to: &Node, first: f64, last: f64, at: usize, points: usi
         return point.value;
     }
     share(first, last)
+}
+
+/// A number with any unit, or none.
+///
+/// # Errors
+/// When it cannot be read.
+pub fn any_quantity(name: &str, node: &Node) -> Result<Value, Diagnostic> {
+    let text = scalar(name, node, &Shape::AnyQuantity)?;
+    if let Some(help) = notation::help(text) {
+        let message = format!("{} is not a number as a study has it; {name} needs one", quote(text));
+        return Err(Diagnostic::new(message).at(node.place).help(notation::with_reading(help, text, &|_| 0.0)));
+    }
+    let read = parse_quantity(text).map_err(|error| {
+        let unit = quote(split_quantity(text).1);
+        let (message, help) = match error {
+            UnitError::Ambiguous { readings, .. } => (
+                format!("{unit} in {} can be read in two ways", quote(text)),
+                words::unit_readings(text, &readings, None),
+            ),
+            UnitError::Malformed { why, instead, .. } => (
+                format!("{unit} in {} cannot be read as a unit: {why}", quote(text)),
+                words::unit_instead(text, instead.as_deref()),
+            ),
+            _ => (
+                format!("{} is not a number with a unit that is known; {name} needs one", quote(text)),
+                "units are written like `um`, `N m`, `N/(mm um)` or `1/um^2`".to_owned(),
+            ),
+        };
+        Diagnostic::new(message).at(node.place).help(help)
+    })?;
+    let unit = split_quantity(text).1.to_owned();
+    Ok(Value::AnyQuantity { value: read.value + 0.0, dimension: read.dimension, unit })
 }

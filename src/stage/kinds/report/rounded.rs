@@ -243,8 +243,8 @@ impl Range {
     /// Between what it is, and whether some value inside agrees with what is published.
     pub fn said(&self, comparison: &Comparison, unit: &str) -> String {
         let (least, largest) = (self.least, self.largest);
-        // With as many digits as tell both ends and a few values between them.
-        let shown = digits(least.abs().max(largest.abs()), (largest - least) / 20.0).clamp(3, 12);
+        // To a hundredth of what is between them.
+        let shown = digits(least.abs().max(largest.abs()), (largest - least) / 2000.0).clamp(3, 12);
         let (low, high) = (significant(least, shown), significant(largest, shown));
         let range = format!("{low} to {} over the rounded inputs", with_unit(&high, unit));
         let reached = match (comparison.agrees_as_stated(), comparison.is_reached()) {
