@@ -76,7 +76,7 @@ impl Rounded {
             Row { needs: points.needed(&named), inputs: (0..ends.len()).filter(matters).collect() }
         };
         let rows = entries.iter().map(row).collect();
-        Ok(Self { rows, points, names, ends, middles })
+        Ok(Self { points, names, ends, middles, rows })
     }
 
     /// What the stages read of the study.
