@@ -26,7 +26,7 @@ pub fn verdicts(table: &Table, width: u16) -> Result<String, ReportError> {
     let mut text = if width < NARROWEST_TABLE { listed(&rows, width) } else { tabulated(&rows, width) };
     text.push('\n');
     for row in &rows {
-        let parts = [&row.because, &row.proof, &row.failing, &row.note];
+        let parts = [&row.because, &row.proof, &row.failing, &row.rounding, &row.note];
         for (index, part) in parts.into_iter().filter(|part| !part.is_empty()).enumerate() {
             let lead = if index == 0 { format!("{:>4}  ", row.number) } else { " ".repeat(6) };
             wrap(&mut text, &lead, part, usize::from(width));

@@ -29,6 +29,8 @@ pub struct Row {
     pub sign: &'static str,
     pub because: String,
     pub note: String,
+    /// What it is inside the intervals of its inputs.
+    pub rounding: String,
     pub numbers: String,
     pub proof: String,
     pub failing: String,
@@ -56,6 +58,8 @@ pub fn rows(table: &Table) -> Result<Vec<Row>, ReportError> {
     let (relative, tolerance) = (number("relative_difference")?, number("tolerance")?);
     let (expected, expected_tolerance) = (number("expected")?, number("expected_tolerance")?);
     let (verdicts, because, note) = (text("verdict")?, text("because")?, text("note")?);
+    // Results of an earlier version have none.
+    let rounding = text("rounding").ok();
     let (arithmetic, proof, failing) = (text("numbers")?, text("proof")?, text("failing")?);
     let one = |row: usize| {
         let is_claim = kinds[row] == "claim";
@@ -95,6 +99,7 @@ pub fn rows(table: &Table) -> Result<Vec<Row>, ReportError> {
             sign: sign(&verdicts[row]),
             because: because[row].clone(),
             note: note[row].clone(),
+            rounding: rounding.map_or_else(String::new, |rounding| rounding[row].clone()),
             numbers: arithmetic[row].clone(),
             proof: proof[row].clone(),
             failing: failing[row].clone(),

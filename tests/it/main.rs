@@ -34,6 +34,7 @@ mod report;
 mod results;
 mod rexs;
 mod root_stress;
+mod rounded;
 mod scatter;
 mod schema;
 mod settings;

@@ -184,6 +184,9 @@ pub fn declaration(field: &Field, marks: &Marks, ident: &Ident) -> Result<Declar
     if marks.chooses {
         declared = quote!(#declared.chooses());
     }
+    if let Some(kinds) = &marks.intervals {
+        declared = quote!(#declared.intervals(&[#kinds]));
+    }
     if let Some(chunk) = &marks.axis {
         declared = quote!(#declared.axis(#chunk));
     }

@@ -18,6 +18,8 @@ pub struct Marks {
     pub multiple: Option<Expr>,
     /// Of which kinds the stage is that is named.
     pub kinds: Option<Punctuated<LitStr, Token![,]>>,
+    /// Which kinds of stages are computed anew inside the intervals of their inputs.
+    pub intervals: Option<Punctuated<LitStr, Token![,]>>,
     /// The field that names the stage whose fields are replaced.
     pub overrides: Option<Expr>,
     /// The field that names the stage of which fields are varied.
@@ -43,11 +45,12 @@ impl Marks {
                     "example" => marks.example = Some(meta.value()?.parse()?),
                     "axis" => marks.axis = Some(meta.value()?.parse()?),
                     "multiple" => marks.multiple = Some(meta.value()?.parse()?),
-                    "kinds" => {
+                    "kinds" | "intervals" => {
                         let words;
                         let value = meta.value()?;
                         bracketed!(words in value);
-                        marks.kinds = Some(Punctuated::parse_terminated(&words)?);
+                        let words = Some(Punctuated::parse_terminated(&words)?);
+                        *(if name == "kinds" { &mut marks.kinds } else { &mut marks.intervals }) = words;
                     }
                     "overrides" => marks.overrides = Some(meta.value()?.parse()?),
                     "varies" => marks.varies = Some(meta.value()?.parse()?),
@@ -58,7 +61,7 @@ impl Marks {
                     _ => {
                         return Err(meta.error(
                             "it is `minimum`, `maximum`, `multiple`, `dimension`, `default`, `example`, `axis`, \
-                             `range`, `chooses`, `kinds`, `overrides`, `varies`, `name` or `flatten`",
+                             `range`, `chooses`, `kinds`, `intervals`, `overrides`, `varies`, `name` or `flatten`",
                         ));
                     }
                 }

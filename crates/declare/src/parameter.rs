@@ -96,6 +96,10 @@ pub struct Field {
     pub span: Span,
     /// Whether an optimiser chooses below this field: quantities with [`Span::Range`] may be `[least, most]` there.
     pub chooses: bool,
+    /// Where what is stated here is set against cells of other stages: the kinds of those that are computed anew inside the
+    /// intervals of their inputs. The record then has these as a [`Varied`](crate::record::varied::Varied) under
+    /// [`INTERVALS`](crate::record::varied::INTERVALS). None: it asks for none.
+    pub intervals: &'static [&'static str],
     /// One sentence with the symbol and the unit.
     pub summary: &'static str,
     /// What a study might say, of the size that is usual; where there is a default, that is one.
@@ -143,7 +147,16 @@ pub const FILE: Field = Field::new(
 impl Field {
     #[must_use]
     pub const fn new(name: &'static str, shape: Shape, summary: &'static str) -> Self {
-        Self { name, shape, presence: Presence::Required, span: Span::Single, chooses: false, summary, example: None }
+        Self {
+            name,
+            shape,
+            presence: Presence::Required,
+            span: Span::Single,
+            chooses: false,
+            intervals: &[],
+            summary,
+            example: None,
+        }
     }
 
     /// A quantity inside `minimum..=maximum` (SI).
@@ -222,6 +235,14 @@ impl Field {
     #[must_use]
     pub const fn chooses(mut self) -> Self {
         self.chooses = true;
+        self
+    }
+
+    /// What is stated here is set against cells of stages; those of these kinds are computed anew inside the intervals of
+    /// their inputs.
+    #[must_use]
+    pub const fn intervals(mut self, kinds: &'static [&'static str]) -> Self {
+        self.intervals = kinds;
         self
     }
 

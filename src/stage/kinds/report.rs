@@ -4,10 +4,14 @@
 //! a cell, with a formula over cells, or stand as a claim that is true or false in every row. A reason for a difference
 //! can carry arithmetic that proves it and the value that is expected instead; both are checked each time. Must not
 //! know: how the report is drawn. Values in the row's unit, as printed.
+//!
+//! Where inputs of what is compared were printed rounded, `0.504 ± 0.0005`, the stages are computed anew inside their intervals, and each
+//! row says whether some value there reproduces it.
 
 mod compare;
 mod entry;
 mod figure;
+mod rounded;
 mod stated;
 mod stated_figure;
 mod verdict;
@@ -22,8 +26,10 @@ use declare::Declared;
 use declare::declared::{Declared, Placed};
 use declare::error::{Diagnostic, Failure, Faults};
 use declare::record::Record;
+use declare::record::varied::Varied;
 use entry::{ReportEntry, verdicts};
 use figure::{Figure, figures, marks};
+use rounded::Rounded;
 use stated::{PrintedTable, Published};
 use stated_figure::StatedFigure;
 use studygraph::table::columns::Columns;
@@ -65,11 +71,17 @@ figures:
 #[derive(Debug, Declared)]
 struct Stated {
     /// the paper's numbers and claims
+    #[declared(intervals = ["geometry", "modification", "stiffness", "ste", "rating"])]
     pub published: Option<Vec<Published>>,
     /// printed tables: a line for each number
+    #[declared(intervals = ["geometry", "modification", "stiffness", "ste", "rating"])]
     pub printout: Option<Vec<PrintedTable>>,
     /// what names stand for in every formula, claim and proof that does not say it itself: cells or quantities
-    #[declared(name = "let", example = "stiffness.summary.mean")]
+    #[declared(
+        name = "let",
+        example = "stiffness.summary.mean",
+        intervals = ["geometry", "modification", "stiffness", "ste", "rating"]
+    )]
     pub shared: Option<Vec<(String, Placed<String>)>>,
     /// results beside others: methods, settings, designs
     pub compare: Option<Vec<Compared>>,
@@ -88,6 +100,8 @@ const SECONDS_OF_DRAWN: f64 = 5e-6;
 /// The stage as configured.
 struct Report {
     entries: Vec<ReportEntry>,
+    /// None where no input of theirs is an interval.
+    rounded: Option<Rounded>,
     comparisons: Vec<Comparison>,
     figures: Vec<Figure>,
     /// What is wrong with others of them.
@@ -115,7 +129,9 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let figures = drawn.map(|((number, stated), record)| Figure::read(number, stated, record));
     let (figures, of_figures) = Faults::apart(figures);
     wrong.extend(of_comparisons.into_iter().chain(of_figures).chain(figure::twice(&figures)));
-    Ok(Box::new(Report { entries, comparisons, figures, wrong }))
+    // What a kind refuses is told of the stage itself.
+    let rounded = Varied::intervals(record).and_then(|varied| Rounded::new(varied, &entries).ok());
+    Ok(Box::new(Report { entries, rounded, comparisons, figures, wrong }))
 }
 
 impl Report {
@@ -136,7 +152,12 @@ impl Stage for Report {
         for (stage, table, columns) in cells.chain(self.figures.iter().flat_map(Figure::wants)) {
             want(&mut ports, stage, table, columns);
         }
+        ports.extend(self.rounded.iter().flat_map(|rounded| rounded.ports().to_vec()));
         ports
+    }
+
+    fn uses_seed(&self) -> bool {
+        self.rounded.as_ref().is_some_and(Rounded::uses_seed)
     }
 
     fn wrong(&self) -> &[Diagnostic] {
@@ -174,10 +195,11 @@ impl Stage for Report {
         let points: Vec<u64> = self.figures.iter().map(|figure| figure.points(ahead)).collect();
         let (all, maximum) = (points.iter().sum::<u64>(), points.iter().copied().max().unwrap_or(0));
         let drawn = points.iter().map(|points| points.min(&MOST_DRAWN)).sum::<u64>();
-        Estimate::new(false)
+        Estimate::new(self.rounded.is_some())
             .holding(maximum.saturating_mul(BYTES_OF_POINT).saturating_add(drawn * BYTES_OF_DRAWN))
             .taking(all as f64 * SECONDS_OF_POINT + drawn as f64 * SECONDS_OF_DRAWN)
             .holding(self.entries.len() as u64 * 1000)
+            .taking(self.rounded.as_ref().map_or(0.0, Rounded::seconds))
             .rows(demand, verdicts().schema(), RowCount::exact(self.entries.len()))
             .rows(demand, verdict_counts().schema(), RowCount::exact(Verdict::ALL.len()))
             .rows(demand, comparisons().schema(), RowCount::exact(self.comparisons.len()))
@@ -194,7 +216,7 @@ impl Stage for Report {
         let comparisons = self.comparisons.iter().filter(|comparison| are_there(&mut comparison.operands()));
         let figures =
             self.figures.iter().filter(|figure| figure.wants().all(|(stage, table, _)| is_there((stage, table))));
-        let wrong = entries.filter_map(|entry| entry.find(inputs).err());
+        let wrong = entries.filter_map(|entry| entry.find(inputs, None).err());
         let wrong = wrong.chain(comparisons.filter_map(|comparison| comparison.find(inputs).err()));
         let wrong = wrong.chain(figures.filter_map(|figure| figure.marked(inputs).err()));
         Ok(Faults::all(wrong.collect())?)
@@ -202,7 +224,11 @@ impl Stage for Report {
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         context.check_stop()?;
-        let found = Faults::collect(self.entries.iter().map(|entry| entry.find(inputs)));
+        let ranges = match &self.rounded {
+            Some(rounded) => rounded.ranges(&self.entries, (context, inputs))?,
+            None => vec![None; self.entries.len()],
+        };
+        let found = Faults::collect(self.entries.iter().zip(ranges).map(|(entry, range)| entry.find(inputs, range)));
         context.check_stop()?;
         let compared = Faults::collect(self.comparisons.iter().map(|comparison| comparison.find(inputs)));
         let marked = Faults::collect(self.figures.iter().map(|figure| figure.marked(inputs)));

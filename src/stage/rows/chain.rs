@@ -146,6 +146,11 @@ impl Chain {
         if let Source::Link(read) = found.1 { Some(read) } else { None }
     }
 
+    /// Whether a port of a stage leads to a link.
+    pub fn reads(&self, index: usize, read: usize) -> bool {
+        self.links[index].ports.iter().any(|(_, source)| *source == Source::Link(read))
+    }
+
     /// The names of the ports of a stage.
     pub fn ports(&self, index: usize) -> impl Iterator<Item = &str> {
         self.links[index].ports.iter().map(|(port, _)| port.name.as_str())

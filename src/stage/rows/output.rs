@@ -61,12 +61,7 @@ impl Output {
 
     /// Adds the table and, where they come only on demand, the columns.
     pub fn ask(&self, outputs: &[Schema], demand: &mut Demand) {
-        let columns = demand.tables.entry(self.cell.table.clone()).or_default();
-        let schema = outputs.iter().find(|schema| schema.name == self.cell.table);
-        let named = self.cell.conditions.iter().map(|(column, _)| column).chain([&self.cell.column]);
-        columns.extend(
-            named.filter(|name| schema.and_then(|schema| schema.column(name)).is_some_and(|it| it.on_demand)).cloned(),
-        );
+        ask(&self.cell, outputs, demand);
     }
 
     /// The number in the one row that meets the conditions; `design` is another one, where the table has designs.
@@ -98,4 +93,14 @@ impl Output {
             _ => f64::NAN,
         })
     }
+}
+
+/// Adds the table of a cell and, where they come only on demand, its columns.
+pub fn ask(cell: &CellName, outputs: &[Schema], demand: &mut Demand) {
+    let columns = demand.tables.entry(cell.table.clone()).or_default();
+    let schema = outputs.iter().find(|schema| schema.name == cell.table);
+    let named = cell.conditions.iter().map(|(column, _)| column).chain([&cell.column]);
+    columns.extend(
+        named.filter(|name| schema.and_then(|schema| schema.column(name)).is_some_and(|it| it.on_demand)).cloned(),
+    );
 }

@@ -8,6 +8,10 @@ use crate::digest::Writer;
 use crate::error::Place;
 use crate::units::Dimension;
 
+/// The name under which a record has the intervals of the inputs of the stages that it is set against, if any has one. No field
+/// of a study is called so: a field of the record says that they are gathered.
+pub const INTERVALS: &str = "intervals";
+
 /// What is varied, and the stages that this concerns.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Varied {
@@ -161,6 +165,15 @@ impl Axis {
 }
 
 impl Varied {
+    /// What a record has of it under [`INTERVALS`].
+    #[must_use]
+    pub fn intervals(record: &Record) -> Option<&Self> {
+        match &record.entry(INTERVALS)?.value {
+            Value::Varied(varied) => Some(varied),
+            _ => None,
+        }
+    }
+
     /// What all values have in common: the stages without what is varied in them, and which fields are.
     pub fn write_shared(&self, writer: &mut Writer) {
         writer.text("varied").count(self.stages.len());
@@ -213,6 +226,35 @@ impl Slot {
     pub fn of_place(record: &Record, place: Place) -> Option<Self> {
         let mut steps = Vec::new();
         in_record(record, place, &mut steps).then_some(Self(steps))
+    }
+
+    /// How a study writes the way to it: names of fields, members and labels with a `.` before each, `[0]` for the first item of
+    /// a list.
+    #[must_use]
+    pub fn path(&self, record: &Record) -> String {
+        let mut path = String::new();
+        let Some((first, rest)) = self.0.split_first() else { return path };
+        let Some((name, mut entry)) = record.fields.get(*first).map(|(name, entry)| (*name, entry)) else {
+            return path;
+        };
+        path += &format!(".{name}");
+        for step in rest {
+            let next = match &entry.value {
+                Value::List(items) => items.get(*step).map(|item| (format!("[{step}]"), item)),
+                Value::Map(entries) => entries.get(*step).map(|(label, item)| (format!(".{label}"), item)),
+                Value::Member(member, inner) => {
+                    inner.fields.get(*step).map(|(name, item)| (format!(".{member}.{name}"), item))
+                }
+                other => other
+                    .record()
+                    .and_then(|inner| inner.fields.get(*step))
+                    .map(|(name, item)| (format!(".{name}"), item)),
+            };
+            let Some((step, inner)) = next else { break };
+            path += &step;
+            entry = inner;
+        }
+        path
     }
 
     /// What is there.
@@ -312,6 +354,7 @@ mod tests {
         let slot = Slot::of_place(&record, at(7)).unwrap();
         assert_eq!(slot, axis().slot);
         assert_eq!(slot.entry(&record).map(|entry| &entry.value), Some(&Value::Quantity(1e-6)));
+        assert_eq!(slot.path(&record), ".designs.b[1].relief.amount");
         axis().put(&mut record, 5e-6);
         assert_eq!(slot.entry(&record).map(|entry| &entry.value), Some(&Value::Quantity(5e-6)));
         assert_eq!(Slot::of_place(&record, at(8)), None);

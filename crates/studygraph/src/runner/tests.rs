@@ -67,6 +67,7 @@ const fn axis(chunk: usize) -> Field {
         presence: Presence::Required,
         span: Span::Axis { chunk },
         chooses: false,
+        intervals: &[],
         summary: "",
         example: Some("3"),
     }

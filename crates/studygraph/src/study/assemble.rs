@@ -11,7 +11,7 @@ use super::links::Draft;
 use super::overrides::Stages;
 use super::path::FieldPath;
 use super::words::{alternatives, quote};
-use super::{Changes, Node, Source, Study, cells, files, links, settings};
+use super::{Changes, Node, Source, Study, cells, files, intervals, links, settings};
 use crate::program::Program;
 use crate::stage::Kind;
 use crate::table::tolerance::Allowance;
@@ -231,7 +231,7 @@ pub fn draft(
             let record = decoder.record(&pair.node, kind.fields, &["kind"], &quote(&draft.name), draft.place);
             decoder.faults.into_iter().for_each(&mut blame);
             draft.kind = Some(kind);
-            draft.record = record.map_err(blame).ok();
+            draft.record = record.map_err(blame).ok().map(|record| intervals::with_intervals(record, kind, stages));
             draft.references = decoder.references;
         }
     }

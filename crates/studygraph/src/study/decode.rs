@@ -6,14 +6,15 @@
 use super::document::{Content, KeyValue, Node, nothing, parse};
 use super::notation;
 use super::overrides::{self, Stages};
-use super::quantity::Measure;
+use super::quantity::interval::Interval;
+use super::quantity::{Measure, any_quantity};
 use super::unknown;
 use super::varied;
 use super::words::{self, alternatives, quote};
 use declare::error::{Diagnostic, Place, suggest};
-use declare::parameter::{Field, Member, Presence, Shape};
+use declare::parameter::{Field, Member, Presence, Shape, Span};
 use declare::record::{PlacedValue, Record, Value, Variant};
-use declare::units::{UnitError, parse_quantity, parse_unit, split_quantity};
+use declare::units::{parse_unit, split_quantity};
 
 /// The name of a stage that a field refers to.
 #[derive(Clone, Debug)]
@@ -28,6 +29,10 @@ pub struct Reference {
 /// Reads fields, and gathers the references among them.
 pub struct Decoder<'a> {
     pub references: Vec<Reference>,
+    /// The numbers that were printed rounded; all else has their middles alone.
+    pub intervals: Vec<Interval>,
+    /// Whether they stand in the record at [`varied::mark`]s, by which their slots are found.
+    pub marks_intervals: bool,
     /// Whatever is wrong besides what was returned as an error.
     pub faults: Vec<Diagnostic>,
     /// Where `[least, most]` belongs: `` in the `design` of an `optimizer` stage ``.
@@ -46,7 +51,8 @@ struct Owner<'a> {
 
 impl<'a> Decoder<'a> {
     pub fn new(ranges_belong: &'a str, stages: Stages<'a>) -> Self {
-        Self { references: Vec::new(), faults: Vec::new(), ranges_belong, stages, chooses: false }
+        let (references, intervals, faults) = (Vec::new(), Vec::new(), Vec::new());
+        Self { references, intervals, marks_intervals: false, faults, ranges_belong, stages, chooses: false }
     }
 
     /// Reads the fields of a mapping called `label` that stands at `place`; `others` are keys that somebody else reads.
@@ -169,7 +175,14 @@ impl<'a> Decoder<'a> {
         }
         let value = match shape {
             Shape::Quantity { .. } | Shape::Number { .. } => {
-                Measure::new(name, shape, example).value(node, field.span, self.ranges())?
+                let measure = Measure::new(name, shape, example);
+                if let Some(interval) = if is_single(field) { measure.interval(node)? } else { None } {
+                    let value = measure.number(interval.middle);
+                    let place = if self.marks_intervals { varied::mark(self.intervals.len()) } else { node.place };
+                    self.intervals.push(interval);
+                    return Ok(PlacedValue { value, place });
+                }
+                measure.value(node, field.span, self.ranges())?
             }
             Shape::AnyQuantity => any_quantity(name, node)?,
             Shape::Integer { minimum, maximum, multiple } => {
@@ -293,6 +306,15 @@ impl<'a> Decoder<'a> {
     }
 }
 
+/// Whether each number that a field has stands by itself, in no list and on no axis.
+pub(super) fn is_single(field: &Field) -> bool {
+    let mut shape = &field.shape;
+    while let Shape::Map(item) = shape {
+        shape = item;
+    }
+    !matches!(shape, Shape::List(_)) && !matches!(field.span, Span::Axis { .. })
+}
+
 /// More than one member where one is expected; often its fields are only not indented far enough.
 fn side_by_side(field: &str, first: &KeyValue, second: &KeyValue, members: &[Member]) -> Diagnostic {
     let message =
@@ -411,32 +433,4 @@ pub(super) fn integer(
 
 fn is_digits(text: &str) -> bool {
     !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
-}
-
-fn any_quantity(name: &str, node: &Node) -> Result<Value, Diagnostic> {
-    let text = scalar(name, node, &Shape::AnyQuantity)?;
-    if let Some(help) = notation::help(text) {
-        let message = format!("{} is not a number as a study has it; {name} needs one", quote(text));
-        return Err(Diagnostic::new(message).at(node.place).help(notation::with_reading(help, text, &|_| 0.0)));
-    }
-    let read = parse_quantity(text).map_err(|error| {
-        let unit = quote(split_quantity(text).1);
-        let (message, help) = match error {
-            UnitError::Ambiguous { readings, .. } => (
-                format!("{unit} in {} can be read in two ways", quote(text)),
-                words::unit_readings(text, &readings, None),
-            ),
-            UnitError::Malformed { why, instead, .. } => (
-                format!("{unit} in {} cannot be read as a unit: {why}", quote(text)),
-                words::unit_instead(text, instead.as_deref()),
-            ),
-            _ => (
-                format!("{} is not a number with a unit that is known; {name} needs one", quote(text)),
-                "units are written like `um`, `N m`, `N/(mm um)` or `1/um^2`".to_owned(),
-            ),
-        };
-        Diagnostic::new(message).at(node.place).help(help)
-    })?;
-    let unit = split_quantity(text).1.to_owned();
-    Ok(Value::AnyQuantity { value: read.value + 0.0, dimension: read.dimension, unit })
 }

@@ -33,6 +33,7 @@ pub struct Draft {
 pub fn check_references(drafts: &[Draft], blame: &mut Blame) {
     let index = by_name(drafts.iter().map(|draft| draft.name.as_str()));
     let mut edges = Vec::with_capacity(drafts.len());
+    let (earlier, mut unfit) = (blame.wrong.len(), BTreeSet::new());
     for (at, draft) in drafts.iter().enumerate() {
         let mut own = Vec::new();
         for reference in &draft.references {
@@ -52,10 +53,15 @@ pub fn check_references(drafts: &[Draft], blame: &mut Blame) {
                     drafts.iter().filter(|other| other.kind.is_some() && fits(other) && other.name != draft.name);
                 let others = others.map(|other| other.name.as_str()).collect();
                 blame.put(at, does_not_fit(reference, found, others));
+                unfit.insert(reference.place.offset);
             }
         }
         edges.push(own);
     }
+    // What was found of such a stage before follows from that.
+    let found = blame.wrong.split_off(earlier);
+    blame.wrong.retain(|told| told.place.is_none_or(|place| !unfit.contains(&place.offset)));
+    blame.wrong.extend(found);
     let names: Vec<_> = drafts.iter().map(|draft| draft.name.as_str()).collect();
     check_circles(&names, &edges, blame);
 }

@@ -16,6 +16,7 @@ pub mod describe;
 pub mod described;
 mod document;
 mod files;
+mod intervals;
 mod links;
 pub mod named;
 mod notation;

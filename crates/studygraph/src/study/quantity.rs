@@ -3,6 +3,9 @@
 //! A number is read from its text, so the same quantity written in two units has the same bits, and so has a point of
 //! an axis given by `from`, `to` and `count` and the same point written out. Results in SI. Must not know: stages.
 
+pub mod interval;
+
+use super::decode::scalar;
 use super::document::{Content, Node};
 use super::notation;
 use super::unknown;
@@ -66,11 +69,13 @@ impl<'a> Measure<'a> {
                 })?;
                 self.bounds(node, items)
             }
-            _ => {
-                let value = self.single(node)?;
-                Ok(if self.dimension.is_some() { Value::Quantity(value) } else { Value::Number(value) })
-            }
+            _ => Ok(self.number(self.single(node)?)),
         }
+    }
+
+    /// As a field holds it.
+    pub fn number(&self, value: f64) -> Value {
+        if self.dimension.is_some() { Value::Quantity(value) } else { Value::Number(value) }
     }
 
     /// One number, in SI and inside the range.
@@ -90,6 +95,9 @@ impl<'a> Measure<'a> {
         if self.dimension.is_none() && quoted {
             let message = format!("{shown} is text in quotes; {} is expected", self.expected());
             return Err(Diagnostic::new(message).help("write the number without quotes"));
+        }
+        if interval::halves(text).is_some() {
+            return Err(self.no_interval(text));
         }
         if let Some(help) = notation::help(text) {
             let message = format!("{shown} is not a number as a study has it; {} is expected", self.expected());
@@ -262,7 +270,7 @@ impl<'a> Measure<'a> {
     /// As [`Measure::value`]; when a number has a unit of its own too.
     pub fn many(&self, node: &Node) -> Result<Vec<PlacedValue>, Diagnostic> {
         let Content::Mapping(pairs) = &node.content else { return Ok(Vec::new()) };
-        let number = |value: f64| if self.dimension.is_some() { Value::Quantity(value) } else { Value::Number(value) };
+        let number = |value: f64| self.number(value);
         let part = |name: &str| pairs.iter().find(|pair| pair.key == name && !pair.node.is_null());
         if part("values").is_none() && part("unit").is_none() {
             let Value::Axis(values) = self.spaced(node)? else { return Ok(Vec::new()) };
@@ -343,4 +351,36 @@ fn between(from: &Node, to: &Node, first: f64, last: f64, at: usize, points: usi
         return point.value;
     }
     share(first, last)
+}
+
+/// A number with any unit, or none.
+///
+/// # Errors
+/// When it cannot be read.
+pub fn any_quantity(name: &str, node: &Node) -> Result<Value, Diagnostic> {
+    let text = scalar(name, node, &Shape::AnyQuantity)?;
+    if let Some(help) = notation::help(text) {
+        let message = format!("{} is not a number as a study has it; {name} needs one", quote(text));
+        return Err(Diagnostic::new(message).at(node.place).help(notation::with_reading(help, text, &|_| 0.0)));
+    }
+    let read = parse_quantity(text).map_err(|error| {
+        let unit = quote(split_quantity(text).1);
+        let (message, help) = match error {
+            UnitError::Ambiguous { readings, .. } => (
+                format!("{unit} in {} can be read in two ways", quote(text)),
+                words::unit_readings(text, &readings, None),
+            ),
+            UnitError::Malformed { why, instead, .. } => (
+                format!("{unit} in {} cannot be read as a unit: {why}", quote(text)),
+                words::unit_instead(text, instead.as_deref()),
+            ),
+            _ => (
+                format!("{} is not a number with a unit that is known; {name} needs one", quote(text)),
+                "units are written like `um`, `N m`, `N/(mm um)` or `1/um^2`".to_owned(),
+            ),
+        };
+        Diagnostic::new(message).at(node.place).help(help)
+    })?;
+    let unit = split_quantity(text).1.to_owned();
+    Ok(Value::AnyQuantity { value: read.value + 0.0, dimension: read.dimension, unit })
 }

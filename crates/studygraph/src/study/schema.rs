@@ -8,6 +8,7 @@ mod leaf;
 use serde_json::{Map, Value, json};
 
 use super::assemble::{FILES, KEYS, SET};
+use super::decode::is_single;
 use super::document::{Content, Node, parse};
 use super::words;
 use crate::stage::Kind;
@@ -170,9 +171,12 @@ impl Families {
         let example = words::example_of(field);
         match shape {
             Shape::Quantity { dimension, minimum, maximum } => {
-                spread(&leaf::quantity(*dimension, *minimum, *maximum, example), field, chooses)
+                let range = (*minimum, *maximum);
+                spread(&|rounded| leaf::quantity(*dimension, range, example, rounded), field, chooses)
             }
-            Shape::Number { minimum, maximum } => spread(&leaf::number(*minimum, *maximum, example), field, chooses),
+            Shape::Number { minimum, maximum } => {
+                spread(&|rounded| leaf::number((*minimum, *maximum), example, rounded), field, chooses)
+            }
             Shape::AnyQuantity => leaf::any_quantity(example),
             Shape::Integer { minimum, maximum, multiple } => leaf::integer(*minimum, *maximum, *multiple, example),
             Shape::Flag => json!({ "type": "boolean" }),
@@ -313,14 +317,14 @@ fn description(field: &Field) -> String {
     range.map_or(field.summary.to_owned(), |range| format!("{} ({range})", field.summary))
 }
 
-/// One value, and the other ways in which a field's span lets it be given.
-fn spread(single: &Value, field: &Field, chooses: bool) -> Value {
+/// One value, and the other ways in which a field's span lets it be given; `single` is whether it may be an interval.
+fn spread(single: &dyn Fn(bool) -> Value, field: &Field, chooses: bool) -> Value {
     match field.span {
-        Span::Axis { .. } => leaf::axis(single),
-        Span::Range if chooses => {
-            json!({ "anyOf": [single, { "type": "array", "minItems": 2, "maxItems": 2, "items": single }] })
-        }
-        Span::Single | Span::Range => single.clone(),
+        Span::Axis { .. } => leaf::axis(&single(false)),
+        Span::Range if chooses => json!({
+            "anyOf": [single(true), { "type": "array", "minItems": 2, "maxItems": 2, "items": single(false) }],
+        }),
+        Span::Single | Span::Range => single(is_single(field)),
     }
 }
 

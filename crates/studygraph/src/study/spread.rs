@@ -7,6 +7,7 @@
 use super::decode::scalar;
 use super::document::{Content, KeyValue, Node};
 use super::quantity::Measure;
+use super::quantity::interval::without_sign;
 use super::words::quote;
 use declare::error::{Diagnostic, Place, suggest};
 use declare::parameter::Shape;
@@ -25,11 +26,6 @@ pub struct Stated<'a> {
 
 /// Fields that only a distribution has.
 const OWN: [&str; 6] = ["within", "shape", "iso1328", "normal", "mean", "mode"];
-
-fn without_sign(text: &str) -> &str {
-    let text = text.trim();
-    ["±", "+/-", "+-"].iter().find_map(|sign| text.strip_prefix(sign)).unwrap_or(text).trim()
-}
 
 impl Stated<'_> {
     fn given(&self, field: &str) -> Option<&Node> {

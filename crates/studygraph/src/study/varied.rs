@@ -9,6 +9,7 @@ use super::document::{Content, KeyValue, Node};
 use super::overrides::Stages;
 use super::path::FieldPath;
 use super::quantity::Measure;
+use super::quantity::interval::without_interval;
 use super::spread;
 use super::unknown;
 use super::words::{alternatives, expected, quote};
@@ -86,8 +87,8 @@ pub fn varied(stages: Stages, of: &Reference, pairs: &[KeyValue]) -> Result<Vari
     Ok(found)
 }
 
-/// A place that no text has.
-fn mark(index: usize) -> Place {
+/// A place that no text has: what is written once and used twice stands twice at one place.
+pub fn mark(index: usize) -> Place {
     Place { line: usize::MAX, column: index, offset: usize::MAX, length: 0 }
 }
 
@@ -172,7 +173,7 @@ fn axis(stages: Stages, links: &[Link], pair: &KeyValue, of: &str) -> Result<(Ax
     };
     let one = |node: &Node| number(name, target.shape, node);
     let path_text = text;
-    let about = || path.written(stages.pairs, stages.kinds);
+    let about = || path.written(stages.pairs, stages.kinds).map(without_interval);
     let stated = spread::Stated { name, fields, place: pair.place, measure: Measure::new(name, target.shape, None) };
     let (values, first, values_place) = if let Some(formula) = given("follows") {
         if let Some(other) = fields.iter().find(|other| !["field", "follows"].contains(&other.key.as_str())) {

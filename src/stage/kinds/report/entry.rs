@@ -4,6 +4,7 @@
 
 mod units;
 
+use super::rounded::Range;
 use super::stated::{Expected, Published, StatedProof};
 use super::verdict::{Comparison, Verdict};
 use crate::stage::Inputs;
@@ -19,6 +20,7 @@ use declare::record::Record;
 use declare::units::{Dimension, RATIO, in_unit};
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
+use studygraph::table::select::CellName;
 
 /// Names that a proof may use without giving them.
 pub const GIVEN: [&str; 2] = ["published", "computed"];
@@ -57,6 +59,7 @@ pub struct ReportEntry {
 /// What came of an entry.
 pub struct Finding<'a> {
     entry: &'a ReportEntry,
+    range: Option<Range>,
     comparison: Comparison,
     pub verdict: Verdict,
     /// In how many rows a claim holds, in words.
@@ -78,6 +81,16 @@ impl Finding<'_> {
         if published == 0.0 { f64::NAN } else { self.difference() / published.abs() }
     }
 
+    /// The least and the largest value inside the intervals of its inputs.
+    fn range(&self) -> (f64, f64) {
+        self.comparison.range.unwrap_or((f64::NAN, f64::NAN))
+    }
+
+    /// What is said of that.
+    fn rounding(&self) -> String {
+        self.range.as_ref().map_or_else(String::new, |range| range.said(&self.comparison, self.entry.unit()))
+    }
+
     /// The value the study stands by, and its tolerance.
     fn expected(&self) -> (f64, f64) {
         self.comparison.expected.unwrap_or((f64::NAN, f64::NAN))
@@ -90,7 +103,10 @@ pub fn verdicts<'a>() -> Columns<Finding<'a>> {
     let with = "What the names in a formula or claim stand for.";
     let published = "The published value in the row's unit; for a claim the number of rows.";
     let computed = "The computed value in the row's unit; for a claim the rows in which it holds.";
-    let unit = "Unit of published, computed, difference, tolerance and expected.";
+    let least = "The least value inside the intervals of its inputs, as far as computed; NaN where none matters.";
+    let largest = "The largest one; every value between both is taken inside, if the computed one is continuous there.";
+    let rounding = "Whether some value inside the intervals of its inputs reproduces it; empty where none matters.";
+    let unit = "Unit of published, computed, least, largest, difference, tolerance and expected.";
     let relative = "(computed − published)/|published|; NaN where that is 0.";
     let tolerance = "How far apart the two may be and still agree.";
     let expected_tolerance = "How far the computed value may be from the expected one.";
@@ -109,6 +125,10 @@ pub fn verdicts<'a>() -> Columns<Finding<'a>> {
         })
         .float("published", "", published, |row| row.comparison.published)
         .float("computed", "", computed, |row| row.comparison.computed)
+        .float("least", "", least, |row| row.range().0)
+        .but(Column::allows_nan)
+        .float("largest", "", largest, |row| row.range().1)
+        .but(Column::allows_nan)
         .text("found", "For a claim: in how many rows it holds.", |row| row.found.clone())
         .text("unit", unit, |row| row.entry.unit())
         .float("difference", "", "Computed − published.", Finding::difference)
@@ -123,6 +143,7 @@ pub fn verdicts<'a>() -> Columns<Finding<'a>> {
         .text("verdict", verdict, |row| row.verdict.word())
         .text("because", "Why they differ.", |row| row.entry.because.as_str())
         .text("note", "A remark that claims no difference.", |row| row.entry.note.as_str())
+        .text("rounding", rounding, Finding::rounding)
         .text("numbers", "The formula's names with their values.", |row| row.numbers.clone())
         .text("proof", proof, |row| row.proof.clone())
         .text("failing", "For a claim: the rows in which it does not hold.", |row| row.failing.clone())
@@ -224,28 +245,52 @@ impl ReportEntry {
         Some((target.stated.dimension, target.stated.text.clone(), target.place))
     }
 
-    /// Compares.
-    ///
-    /// # Errors
-    /// What is wrong with it, at its place.
-    pub fn find(&self, inputs: &Inputs) -> Result<Finding<'_>, Diagnostic> {
-        self.compare(inputs).map_err(|found| found.or_at(self.place))
+    /// The cells that its number comes from; a claim has none.
+    pub fn cells(&self) -> impl Iterator<Item = &CellName> {
+        let (cell, with) = match &self.subject {
+            Subject::Cell(operand) => (Some(operand), [].as_slice()),
+            Subject::Formula(_, with) => (None, with.as_slice()),
+            Subject::Claim(..) => (None, [].as_slice()),
+        };
+        cell.into_iter().chain(with.iter().map(|(_, operand)| operand)).filter_map(Operand::cell)
     }
 
-    fn compare(&self, inputs: &Inputs) -> Result<Finding<'_>, Diagnostic> {
-        let unit = self.unit();
-        let (computed, total, numbers, failing) = match &self.subject {
+    /// The number in the published unit, and what the names of a formula come to; a claim has none.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn number(&self, inputs: &Inputs) -> Result<Option<(f64, String)>, Diagnostic> {
+        Ok(match &self.subject {
             Subject::Cell(operand) => {
                 let values = operand.resolve(inputs)?;
-                (self.in_published_unit(values.single(operand)?)?, 0.0, String::new(), String::new())
+                Some((self.in_published_unit(values.single(operand)?)?, String::new()))
             }
             Subject::Formula(formula, with) => {
                 let rows = OperandRows::of(inputs, with)?;
                 rows.single(formula)?;
                 match formula.evaluate(rows.names(0, &rows.lookup(None))).map_err(Diagnostic::new)? {
-                    Outcome::Number(number) => (self.in_published_unit(number)?, 0.0, rows.written(0), String::new()),
+                    Outcome::Number(number) => Some((self.in_published_unit(number)?, rows.written(0))),
                     Outcome::Truth(_) => return Err(Diagnostic::new("a formula gives a number")),
                 }
+            }
+            Subject::Claim(..) => None,
+        })
+    }
+
+    /// Compares; `range` is what its number is inside the intervals of its inputs.
+    ///
+    /// # Errors
+    /// What is wrong with it, at its place.
+    pub fn find(&self, inputs: &Inputs, range: Option<Range>) -> Result<Finding<'_>, Diagnostic> {
+        self.compare(inputs, range).map_err(|found| found.or_at(self.place))
+    }
+
+    fn compare(&self, inputs: &Inputs, range: Option<Range>) -> Result<Finding<'_>, Diagnostic> {
+        let unit = self.unit();
+        let (computed, total, numbers, failing) = match &self.subject {
+            Subject::Cell(_) | Subject::Formula(..) => {
+                let (number, numbers) = self.number(inputs)?.unwrap_or((f64::NAN, String::new()));
+                (number, 0.0, numbers, String::new())
             }
             Subject::Claim(formula, with) => {
                 let rows = OperandRows::of(inputs, with)?;
@@ -273,14 +318,16 @@ impl ReportEntry {
         };
         let has_reason = !self.because.is_empty();
         let is_claim = self.published.is_none();
-        let comparison = Comparison { published, computed, tolerance, expected, has_reason, proof_holds, is_claim };
+        let between = range.as_ref().map(Range::ends);
+        let comparison =
+            Comparison { published, computed, range: between, tolerance, expected, has_reason, proof_holds, is_claim };
         let verdict = comparison.judge().map_err(Diagnostic::new)?;
         let found = match (is_claim, total > 1.0) {
             (false, _) => String::new(),
             (true, true) => format!("holds in {computed} of {total}"),
             (true, false) => (if computed > 0.0 { "holds" } else { "does not hold" }).to_owned(),
         };
-        Ok(Finding { entry: self, comparison, verdict, found, numbers, proof, failing })
+        Ok(Finding { entry: self, range, comparison, verdict, found, numbers, proof, failing })
     }
 
     /// Of the published value; none for a claim.

@@ -1,8 +1,8 @@
 //! From a published and a computed value to a verdict.
 //!
 //! A difference alone says nothing: either it lies within the tolerance, or somebody says why it is there, and can prove
-//! it, and says where the computed value stands today so that it cannot drift behind the reason. Must not know: tables,
-//! cells, units (both values are in one unit).
+//! it, and says where the computed value stands today so that it cannot drift behind the reason. Where inputs were printed rounded
+//! a value agrees if it does for any of those that they may be. Must not know: tables, cells, units (all values are in one).
 
 /// What is said about one entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,6 +59,8 @@ impl Verdict {
 pub struct Comparison {
     pub published: f64,
     pub computed: f64,
+    /// The least and the largest value that it comes to inside the intervals of its inputs, where any matters.
+    pub range: Option<(f64, f64)>,
     /// How far apart the two may be and still agree.
     pub tolerance: f64,
     /// The value the study stands by, and how far the computed one may be from it.
@@ -83,7 +85,8 @@ impl Comparison {
         if self.expected.is_some_and(|(value, tolerance)| !within(self.computed, value, tolerance)) {
             return Ok(Verdict::Moved);
         }
-        let agrees = within(self.computed, self.published, self.tolerance);
+        // What the rounding of an input already accounts for needs no other reason either: that has not been shown to differ.
+        let agrees = self.agrees_as_stated() || self.is_reached() == Some(true);
         let explained = self.has_reason && self.proof_holds != Some(false);
         Ok(match (agrees, self.is_claim) {
             (true, _) if self.has_reason => Verdict::Outdated,
@@ -93,6 +96,19 @@ impl Comparison {
             (false, true) if explained => Verdict::Refuted,
             (false, _) => Verdict::Unexplained,
         })
+    }
+
+    /// Whether both agree with the inputs in the middle of their intervals.
+    #[must_use]
+    pub fn agrees_as_stated(&self) -> bool {
+        within(self.computed, self.published, self.tolerance)
+    }
+
+    /// Whether some value from the least to the largest agrees; none where there are none.
+    #[must_use]
+    pub fn is_reached(&self) -> Option<bool> {
+        let (least, largest) = self.range?;
+        Some(within(self.published.clamp(least, largest), self.published, self.tolerance))
     }
 }
 
@@ -108,6 +124,7 @@ mod tests {
     const PLAIN: Comparison = Comparison {
         published: 2.316,
         computed: 2.316,
+        range: None,
         tolerance: 0.0005,
         expected: None,
         has_reason: false,
@@ -168,6 +185,32 @@ mod tests {
         ] {
             assert_eq!(comparison.judge(), Ok(verdict), "{case}");
         }
+    }
+
+    #[test]
+    fn rounded_inputs_reproduce_what_lies_between_the_least_and_the_largest_value() {
+        // 2.316 ± 0.0005 beside 2.320, which is too much by itself.
+        let rounded = |least, largest| Comparison { computed: 2.320, range: Some((least, largest)), ..PLAIN };
+        let reason = |least, largest| Comparison { has_reason: true, ..rounded(least, largest) };
+        for (case, comparison, reached, verdict) in [
+            ("between", rounded(2.310, 2.330), true, Verdict::Reproduced),
+            ("the least is inside the tolerance", rounded(2.3164, 2.330), true, Verdict::Reproduced),
+            ("the least is on its edge", rounded(2.3165, 2.330), true, Verdict::Reproduced),
+            ("the least is beyond it", rounded(2.316_51, 2.330), false, Verdict::Unexplained),
+            ("all is below", rounded(2.310, 2.3154), false, Verdict::Unexplained),
+            ("the largest is on the lower edge", rounded(2.310, 2.3155), true, Verdict::Reproduced),
+            ("a reason that is not needed", reason(2.310, 2.330), true, Verdict::Outdated),
+            ("a reason that is", reason(2.317, 2.330), false, Verdict::Explained),
+            (
+                "not where it was expected",
+                Comparison { expected: Some((2.4, 0.01)), ..rounded(2.310, 2.330) },
+                true,
+                Verdict::Moved,
+            ),
+        ] {
+            assert_eq!((comparison.is_reached(), comparison.judge()), (Some(reached), Ok(verdict)), "{case}");
+        }
+        assert_eq!(PLAIN.is_reached(), None);
     }
 
     #[test]

@@ -14,6 +14,9 @@ const NUMBER: &str = r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?";
 /// The same where a minus would be outside every range.
 const POSITIVE: &str = r"\+?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?";
 
+/// Between the middle and half the width of a number that was printed rounded.
+const OFF_BY: &str = r" *(±|\+/?-) *";
+
 /// A name as a heading: `Young's modulus` of `youngs_modulus`.
 pub fn title(name: &str) -> String {
     let word = |word: &str| match word {
@@ -51,11 +54,13 @@ fn with_example(mut schema: Value, example: Option<Value>) -> Value {
     schema
 }
 
-/// A number with a unit; a plain one or one in percent where it is a ratio.
-pub fn quantity(dimension: Dimension, minimum: f64, maximum: f64, example: Option<&str>) -> Value {
+/// A number with a unit; a plain one or one in percent where it is a ratio. `rounded`: or an interval about it.
+pub fn quantity(dimension: Dimension, (minimum, maximum): (f64, f64), example: Option<&str>, rounded: bool) -> Value {
     if dimension == RATIO {
         let message = "a ratio is a plain number or one with `%`, such as `0.05` or `5 %`";
-        let percent = json!({ "type": "string", "pattern": format!("^{NUMBER} *%$") });
+        let off_by = format!("|%{OFF_BY}{POSITIVE} *%|{OFF_BY}{POSITIVE}");
+        let percent = format!("^{NUMBER} *(%{})$", if rounded { &off_by } else { "" });
+        let percent = json!({ "type": "string", "pattern": percent });
         let (percent, plain) = match example.map(|text| (text, text.parse::<serde_json::Number>())) {
             Some((_, Ok(plain))) => (percent, Some(Value::Number(plain))),
             Some((text, Err(_))) => (with_example(percent, Some(json!(text))), None),
@@ -73,7 +78,10 @@ pub fn quantity(dimension: Dimension, minimum: f64, maximum: f64, example: Optio
     };
     let example = example.map(str::to_owned).or_else(|| words::example(dimension, minimum, maximum));
     let number = if minimum > 0.0 { POSITIVE } else { NUMBER };
-    let schema = json!({ "type": "string", "pattern": format!("^{number} *({units})$") });
+    // The unit may stand behind both halves of an interval.
+    let off_by = format!("(( *({units}))?{OFF_BY}{POSITIVE})?");
+    let pattern = format!("^{number}{} *({units})$", if rounded { &off_by } else { "" });
+    let schema = json!({ "type": "string", "pattern": pattern });
     let such = example.as_ref().map_or_else(String::new, |text| format!(", such as `{text}`"));
     let more = if minimum > 0.0 { ", more than 0" } else { "" };
     let message = format!("{} is a number and a unit{more}{such}", dimension.describe().0);
@@ -100,10 +108,15 @@ fn bounded(minimum: f64, maximum: f64) -> Value {
     schema
 }
 
-/// A plain number.
-pub fn number(minimum: f64, maximum: f64, example: Option<&str>) -> Value {
+/// A plain number. `rounded`: or an interval about it.
+pub fn number((minimum, maximum): (f64, f64), example: Option<&str>, rounded: bool) -> Value {
     let example = example.and_then(|text| text.parse::<serde_json::Number>().ok()).map(Value::Number);
-    with_example(explained(bounded(minimum, maximum), "a plain number is expected, without a unit"), example)
+    let mut schema = bounded(minimum, maximum);
+    if rounded {
+        schema["type"] = json!(["number", "string"]);
+        schema["pattern"] = json!(format!("^{NUMBER}{OFF_BY}{POSITIVE}$"));
+    }
+    with_example(explained(schema, "a plain number is expected, without a unit"), example)
 }
 
 pub fn integer(minimum: i64, maximum: i64, multiple: i64, example: Option<&str>) -> Value {

@@ -1,0 +1,137 @@
+//! What inputs that were printed rounded may be besides their middles, for stages that set something against what comes of them.
+//!
+//! A field with `intervals` says that what is stated in it names cells of other stages. Those stages and all that they read,
+//! near or far, are looked through for numbers written as intervals, as far as their kinds are computed anew. Where there are
+//! none the record stays as it is, and so do all keys. Must not know: what any field means, which kind sets what against what.
+
+use std::collections::BTreeSet;
+
+use super::decode::Decoder;
+use super::document::{Content, Node};
+use super::overrides::Stages;
+use super::quantity::interval::{Interval, halves};
+use super::varied::mark;
+use super::words::quote;
+use crate::stage::Kind;
+use declare::error::Diagnostic;
+use declare::record::varied::{INTERVALS, Stage, Varied};
+use declare::record::{PlacedValue, Record, Value};
+
+/// A stage that is named, or read by one that is.
+struct Link {
+    name: String,
+    kind: &'static Kind,
+    /// Its intervals stand at marks.
+    record: Record,
+    intervals: Vec<Interval>,
+    /// The stages that it refers to.
+    reads: Vec<String>,
+}
+
+/// A record of a kind with the intervals of the inputs of all that it is set against, if there are any. What is wrong with other
+/// stages is told where they are read.
+pub fn with_intervals(mut record: Record, kind: &'static Kind, stages: Stages) -> Record {
+    let asks = || kind.fields.iter().filter(|field| !field.intervals.is_empty());
+    if asks().next().is_none() || !stages.pairs.iter().any(|pair| may_have_one(&pair.node)) {
+        return record;
+    }
+    let mut links = Vec::new();
+    for field in asks() {
+        let Some(entry) = record.entry(field.name) else { continue };
+        let mut named = BTreeSet::new();
+        gather(&entry.value, stages, &mut named);
+        for name in named {
+            if link(stages, name, field.intervals, &mut Vec::new(), &mut links).is_err() {
+                return record;
+            }
+        }
+    }
+    let varied = varied(links);
+    if !varied.axes.is_empty() {
+        let place = record.place;
+        record.fields.push((INTERVALS, PlacedValue { value: Value::Varied(varied), place }));
+    }
+    record
+}
+
+/// Whether a tree has a text that looks like an interval; most studies have none, and nothing of theirs is read twice.
+fn may_have_one(node: &Node) -> bool {
+    match &node.content {
+        Content::Scalar { text, .. } => halves(text).is_some(),
+        Content::Sequence(items) => items.iter().any(may_have_one),
+        Content::Mapping(pairs) => pairs.iter().any(|pair| may_have_one(&pair.node)),
+    }
+}
+
+/// The stages with which texts of a value begin: `stage.table.column`.
+fn gather<'s>(value: &Value, stages: Stages<'s>, named: &mut BTreeSet<&'s str>) {
+    match value {
+        Value::Text(text) => {
+            let first = text.trim().split_once('.').map(|(first, _)| first);
+            let stage = stages.pairs.iter().find(|pair| first == Some(pair.key.as_str()));
+            named.extend(stage.map(|pair| pair.key.as_str()));
+        }
+        Value::List(entries) => entries.iter().for_each(|entry| gather(&entry.value, stages, named)),
+        Value::Map(entries) => entries.iter().for_each(|(_, entry)| gather(&entry.value, stages, named)),
+        other => {
+            let fields = other.record().into_iter().flat_map(|record| &record.fields);
+            fields.for_each(|(_, entry)| gather(&entry.value, stages, named));
+        }
+    }
+}
+
+/// Gathers a stage after all that it reads, as far as they are of these kinds; `open` are those that are being gathered.
+fn link(
+    stages: Stages,
+    name: &str,
+    kinds: &[&str],
+    open: &mut Vec<String>,
+    links: &mut Vec<Link>,
+) -> Result<(), Diagnostic> {
+    // Stages that read each other in a circle are told of when all are known.
+    if open.iter().any(|other| other == name) || links.iter().any(|link| link.name == name) {
+        return Ok(());
+    }
+    let Some(pair) = stages.pairs.iter().find(|pair| pair.key == name) else { return Ok(()) };
+    let place = pair.place;
+    let Ok((kind, stage)) = stages.plain(name, place) else { return Ok(()) };
+    if !kinds.contains(&kind.name) {
+        return Ok(());
+    }
+    open.push(name.to_owned());
+    let mut decoder = Decoder::new("where an optimiser chooses", Stages::default());
+    decoder.marks_intervals = true;
+    let record = decoder.record(&stage.node, kind.fields, &["kind"], &quote(name), stage.place)?;
+    let (references, intervals) = (decoder.references, decoder.intervals);
+    for reference in &references {
+        link(stages, &reference.stage, kinds, open, links)?;
+    }
+    open.pop();
+    let reads = references.into_iter().map(|reference| reference.stage).collect();
+    links.push(Link { name: name.to_owned(), kind, record, intervals, reads });
+    Ok(())
+}
+
+/// The stages that have an interval and those that read one of them, each after all that it reads, and the intervals.
+fn varied(links: Vec<Link>) -> Varied {
+    let mut kept: Vec<Link> = Vec::new();
+    for link in links {
+        if !link.intervals.is_empty() || link.reads.iter().any(|read| kept.iter().any(|other| other.name == *read)) {
+            kept.push(link);
+        }
+    }
+    let names: Vec<String> = kept.iter().map(|link| link.name.clone()).collect();
+    let mut found = Varied::default();
+    for (index, Link { name, kind, mut record, intervals, reads }) in kept.into_iter().enumerate() {
+        let axes = intervals.iter().enumerate();
+        found.axes.extend(axes.filter_map(|(at, interval)| interval.axis(&name, index, &mut record, mark(at))));
+        found.stages.push(Stage {
+            name,
+            kind: kind.name,
+            record: record.clone(),
+            filled: record,
+            reads: reads.iter().map(|read| names.iter().position(|name| name == read)).collect(),
+        });
+    }
+    found
+}

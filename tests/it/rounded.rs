@@ -1,0 +1,253 @@
+//! Inputs that were printed rounded, `0.504 ± 0.0005`: what the rows of a report say of the values inside. Against closed forms, whole
+//! studies at the ends, and a fit that looks for such a value.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use crate::desk::Desk;
+use crate::registry::walk::{Ran, load, walk};
+use declare::digest::{Digest, Writer};
+use declare::record::varied::Varied;
+use gearstudy::program;
+use studygraph::study::Study;
+use studygraph::table::data::Table;
+
+const PAIR: &str = "
+  pair:
+    kind: geometry
+    module: 3 mm
+    pressure_angle: 20 deg
+    material: { youngs_modulus: 206 GPa, poisson_ratio: 0.3 }
+    pinion: { teeth: 19, profile_shift: 0.21, face_width: 20 mm, bore_radius: 14.079 mm }
+    gear: { teeth: 48, face_width: 20 mm, bore_radius: 38.823 mm }
+";
+const STE: &str = "
+  stiffness: { kind: stiffness, pair: pair, method: energy, contact: linear, coupling: none }
+  designs:
+    kind: modification
+    pair: pair
+    designs: { relieved: [{ tip_relief: { gear: both, amount: 8 um, length: 4 mm, curve: linear } }] }
+  ste: { kind: ste, stiffness: stiffness, designs: designs, torque: 50 N m, positions: 16 }
+";
+const DIAMETER: &str = "\"pair.inspection[gear=pinion].reference_diameter\"";
+const THICKNESS: &str = "\"pair.inspection[gear=pinion].tooth_thickness\"";
+
+fn study(stages: &[&str], published: &str) -> String {
+    format!("study: t\nseed: 3\nstages:{}  report:\n    kind: report\n    published:\n{published}", stages.concat())
+}
+
+fn ran(stages: &[&str], published: &str) -> BTreeMap<String, Ran> {
+    walk(&load(&study(stages, published)))
+}
+
+fn table<'r>(ran: &'r BTreeMap<String, Ran>, stage: &str, name: &str) -> &'r Table {
+    ran[stage].tables.iter().find(|table| table.name() == name).unwrap()
+}
+
+fn verdicts(ran: &BTreeMap<String, Ran>) -> &Table {
+    table(ran, "report", "verdicts")
+}
+
+/// The least and the largest value of a row.
+fn range(table: &Table, row: usize) -> [f64; 2] {
+    [table.floats("least")[row], table.floats("largest")[row]]
+}
+
+fn row(cell: &str, value: &str) -> String {
+    format!("      - {{ cell: {cell}, value: {value} }}\n")
+}
+
+/// m (π/2 + 2 x tan 20°) \[mm\]
+fn thickness(module: f64, shift: f64) -> f64 {
+    module * (std::f64::consts::FRAC_PI_2 + 2.0 * shift * libm::tan(20_f64.to_radians()))
+}
+
+fn assert_near(found: [f64; 2], expected: [f64; 2], what: &str) {
+    let is_near = |(one, other): (f64, f64)| (one - other).abs() <= 1e-12 * other.abs();
+    assert!(found.into_iter().zip(expected).all(is_near), "{what}: {found:?} is not {expected:?}");
+}
+
+/// The pair with a module and a profile shift that were printed rounded.
+fn rounded() -> String {
+    PAIR.replace("module: 3 mm", "module: 3 ± 0.005 mm").replace("shift: 0.21", "shift: 0.21 ± 0.005")
+}
+
+/// Tier: closed form; what is linear in one input, a product of two, a quotient whose ends are at other corners, and what is least
+/// in the middle. And what no interval changes has no range.
+#[test]
+fn the_range_of_a_row_is_that_of_its_closed_form() {
+    let quotient = "      - { formula: s / d, with: { s: THICKNESS, d: DIAMETER }, value: \"0.1\" }\n";
+    let square = "      - { formula: \"(d / d_0 - 1)^2\", with: { d: DIAMETER, d_0: 57 mm }, value: \"0\" }\n";
+    let published = [
+        row(DIAMETER, "57.0 mm"),
+        row(THICKNESS, "5.17 mm"),
+        quotient.replace("THICKNESS", THICKNESS).replace("DIAMETER", DIAMETER),
+        square.replace("DIAMETER", DIAMETER),
+        "      - { formula: \"2 * z\", with: { z: \"pair.gears[gear=pinion].teeth\" }, value: \"38\" }\n".to_owned(),
+    ];
+    let found = ran(&[&rounded()], &published.concat());
+    let table = verdicts(&found);
+    let (low, high) = ((2.995, 0.205), (3.005, 0.215));
+    assert_near(range(table, 0), [19.0 * low.0, 19.0 * high.0], "a diameter");
+    assert_near(range(table, 1), [thickness(low.0, low.1), thickness(high.0, high.1)], "a thickness");
+    // The module cancels.
+    assert_near(range(table, 2), [thickness(1.0, low.1) / 19.0, thickness(1.0, high.1) / 19.0], "a quotient");
+    let [least, largest] = range(table, 3);
+    assert!(least == table.floats("computed")[3] && least < 1e-20, "{least}");
+    assert!((largest / (0.005_f64 / 3.0).powi(2) - 1.0).abs() < 1e-9, "{largest}");
+    assert!(range(table, 4).into_iter().all(f64::is_nan) && table.texts("rounding")[4].is_empty());
+    assert_eq!(
+        table.texts("rounding")[0],
+        "56.905 to 57.095\u{202f}mm over the rounded inputs; as stated they reproduce it"
+    );
+}
+
+/// Second method: a fit that looks for values inside finds some where the row is reproduced, and none where it is not.
+#[test]
+fn a_row_is_reproduced_where_a_fit_finds_values_inside() {
+    let mut verdict_of = Vec::new();
+    for (module, shift) in [(3.004, 0.2149), (2.996, 0.2056), (3.0055, 0.2155), (2.9945, 0.2045)] {
+        let wanted = format!("{:.9} mm, tolerance: 1e-6 mm", thickness(module, shift));
+        let fit = format!(
+            "  fit:\n    kind: fit\n    of: pair\n    vary:\n      shift: {{ field: pair.pinion.profile_shift, within: ± 0.005 }}
+      module: {{ field: pair.module, within: ± 0.005 mm }}\n    meet:\n{}    starts: 2\n",
+            row(THICKNESS, &wanted)
+        );
+        // The fit reads the intervals as well, and takes their middles.
+        let found = ran(&[&rounded(), &fit], &row(THICKNESS, &wanted));
+        let table = verdicts(&found);
+        let solutions = self::table(&found, "fit", "summary").integers("solutions")[0];
+        let verdict = table.texts("verdict")[0].clone();
+        assert_eq!(verdict == "reproduced", solutions > 0, "{wanted}: {verdict}, {solutions} solutions");
+        let said = if solutions > 0 { "; some value inside reproduces it" } else { "; none inside reproduces it" };
+        assert!(table.texts("rounding")[0].ends_with(said), "{}", table.texts("rounding")[0]);
+        verdict_of.push(verdict);
+    }
+    assert_eq!(verdict_of, ["reproduced", "reproduced", "unexplained", "unexplained"]);
+}
+
+/// A reason that the rounding of an input makes needless is told of, one that it does not stands.
+#[test]
+fn a_reason_that_rounding_replaces_is_outdated() {
+    let with = |value: &str| format!("      - {{ cell: {DIAMETER}, value: {value}, because: the paper says so }}\n");
+    let found = ran(&[&rounded()], &[with("57.09 mm"), with("57.2 mm")].concat());
+    assert_eq!(verdicts(&found).texts("verdict"), ["outdated", "explained"]);
+    let counts = table(&found, "report", "verdict_counts");
+    assert_eq!(counts.integers("count").iter().sum::<i64>(), 2);
+}
+
+fn digest(study: &Study, stage: &str) -> Digest {
+    let mut writer = Writer::new("test");
+    study.nodes.iter().find(|node| node.name == stage).unwrap().record.write(&mut writer);
+    writer.finish()
+}
+
+/// Invariant: all that a study computes is computed with the middles, to the last bit; the report alone says more.
+#[test]
+fn everything_else_is_as_without_intervals() {
+    let published = [row("ste.summary.peak_to_peak", "3 um"), row(THICKNESS, "5.2 mm")].concat();
+    let (plain, with) = (study(&[PAIR, STE], &published), study(&[&rounded(), STE], &published));
+    let (plain, with) = (load(&plain), load(&with));
+    for stage in ["pair", "stiffness", "designs", "ste"] {
+        assert_eq!(digest(&plain, stage), digest(&with, stage), "{stage}");
+    }
+    assert_ne!(digest(&plain, "report"), digest(&with, "report"));
+    let (plain, with) = (walk(&plain), walk(&with));
+    for stage in ["pair", "stiffness", "designs", "ste"] {
+        // As text, since no NaN is another; without what says how long it took.
+        let text = |ran: &BTreeMap<String, Ran>| {
+            let tables = ran[stage].tables.iter().filter(|table| table.name() != "cost");
+            tables.map(|table| format!("{table:?}")).collect::<Vec<_>>()
+        };
+        assert!(text(&plain) == text(&with), "{stage}");
+    }
+    for column in ["published", "computed", "difference", "tolerance"] {
+        assert_eq!(verdicts(&plain).floats(column), verdicts(&with).floats(column), "{column}");
+    }
+    assert!(verdicts(&plain).floats("least").iter().all(|value| value.is_nan()));
+}
+
+/// Second method: a stage that reads the interval from afar comes to what whole studies at its ends come to.
+#[test]
+fn far_stages_are_those_of_whole_studies_at_the_ends() {
+    let cell = "ste.summary.mean";
+    let at = |modulus: &str| {
+        let pair = PAIR.replace("206 GPa", modulus);
+        table(&ran(&[&pair, STE], &row(cell, "3 um")), "ste", "summary").floats("mean")[0]
+    };
+    let found = ran(&[&PAIR.replace("206 GPa", "206 ± 0.5 GPa"), STE], &row(cell, "3 um"));
+    // The stiffer, the less.
+    assert_eq!(range(verdicts(&found), 0), [at("206.5 GPa"), at("205.5 GPa")]);
+}
+
+/// What a stage refuses at an end is said in the row, and the rest is told all the same.
+#[test]
+fn a_point_that_is_refused_is_said_in_its_row() {
+    // The root circle is 49.5 mm + 2 · 0.21 · 3 mm wide.
+    let pair = PAIR.replace("14.079 mm", "23 ± 3 mm").replace("module: 3 mm", "module: 3 ± 0.005 mm");
+    let found = ran(&[&pair], &row(DIAMETER, "57.05 mm"));
+    let table = verdicts(&found);
+    assert_near(range(table, 0), [19.0 * 2.995, 19.0 * 3.005], "a diameter");
+    let said = &table.texts("rounding")[0];
+    assert!(said.contains("some value inside reproduces it; no value at 1 of "), "{said}");
+    assert!(said.contains("for example: geometry: "), "{said}");
+}
+
+/// Fields of what is written once and used twice are two inputs; `set` and labels with dots lead there too.
+#[test]
+fn every_field_is_an_input_of_its_own() {
+    let text = "study: t\nstages:\n  pair:\n    kind: geometry\n    module: 3 mm
+    pinion: &wheel { teeth: 24, face_width: 20 mm, bore_radius: 18 ± 0.5 mm }\n    gear: { <<: *wheel, teeth: 36 }
+  designs:\n    kind: modification\n    pair: pair
+    designs: { v.2: [{ lead_crowning: { gear: pinion, amount: 3 um } }, { tip_relief: { gear: both, amount: 8 ± 0.5 um, length: 4 mm, curve: linear } }] }
+  other: { kind: geometry, module: 2 mm ± 5 um, pinion: *wheel, gear: *wheel }
+  report:\n    kind: report\n    published:\n      - { cell: \"designs.resolved[design=v.2, gear=pinion, element=2].amount\", value: 8 um }\nset: { pair.module: 3 ± 0.05 mm }\n";
+    let study = program::load_text(text, Path::new("t.yaml")).unwrap_or_else(|error| panic!("{error}"));
+    let report = study.nodes.iter().find(|node| node.name == "report").unwrap();
+    let varied = Varied::intervals(&report.record).unwrap();
+    let paths: Vec<&str> = varied.axes.iter().map(|axis| axis.path.as_str()).collect();
+    let own = "designs.designs.v.2[1].tip_relief.amount";
+    assert_eq!(paths, ["pair.module", "pair.pinion.bore_radius", "pair.gear.bore_radius", own]);
+    let stages: Vec<&str> = varied.stages.iter().map(|stage| stage.name.as_str()).collect();
+    assert_eq!(stages, ["pair", "designs"], "what no row comes from is left out");
+}
+
+/// As a user runs it: set from outside it is the same study; pieces are one run; an archive is verified; only the report differs
+/// from the study without intervals, and that it does is told.
+#[test]
+fn intervals_are_set_cut_archived_and_compared() {
+    let desk = Desk::with("quick.yaml");
+    let published = row(DIAMETER, "57.09 mm");
+    let ste = STE.replace("torque: 50 N m", "torque: { from: 50 N m, to: 65 N m, count: 16 }");
+    std::fs::write(desk.path("plain.yaml"), study(&[PAIR, &ste], &published).replace("study: t", "study: plain"))
+        .unwrap();
+    let pair = PAIR.replace("module: 3 mm", "module: 3 ± 0.005 mm");
+    std::fs::write(desk.path("rounded.yaml"), study(&[&pair, &ste], &published).replace("study: t", "study: rounded"))
+        .unwrap();
+    desk.run(&["run", "plain.yaml", "--quiet"], 0);
+    let (out, _) = desk.run(&["plan", "rounded.yaml"], 0);
+    assert!(out.contains("config changed") || out.contains("report"), "{out}");
+    desk.run(&["run", "rounded.yaml", "--quiet"], 0);
+    assert_eq!(desk.ran("rounded"), ["report"], "all else is there already");
+    let set = ["--set", "pair.module=3 ± 0.005 mm", "--name", "set"];
+    desk.run(&[&["run", "plain.yaml", "--quiet"], &set[..]].concat(), 0);
+    assert_eq!(desk.contents("set"), desk.contents("rounded"));
+    assert_eq!(desk.ran("set"), Vec::<String>::new(), "the same keys");
+    let (text, _) = desk.run(&["report", "rounded.yaml"], 0);
+    assert!(text.contains("some value inside reproduces it"), "{text}");
+    let page = std::fs::read_to_string(desk.path("results/rounded/report.html")).unwrap();
+    assert!(page.contains("56.905 to 57.095\u{202f}mm over the rounded inputs"));
+    let (text, _) = desk.run(&["diff", "results/plain", "results/rounded"], 4);
+    assert!(text.contains("unexplained") && text.contains("reproduced"), "{text}");
+    let whole = desk.contents("rounded");
+    desk.run(&["archive", "rounded.yaml", "-o", "a.zip"], 0);
+    assert!(desk.run(&["verify", "a.zip"], 0).0.contains(" 0 different"));
+    std::fs::remove_dir_all(desk.path("results")).unwrap();
+    std::fs::remove_dir_all(desk.path(".gearstudy")).unwrap();
+    desk.run(&["shard", "plan", "rounded.yaml", "--shards", "2", "--into", "plan"], 0);
+    for index in ["1", "0"] {
+        desk.run(&["shard", "run", "plan", index, "--quiet"], 0);
+    }
+    desk.run(&["shard", "merge", "plan"], 0);
+    assert_eq!(desk.contents("rounded"), whole);
+}
