@@ -142,7 +142,7 @@ impl Limits {
     }
 
     fn ends(&self, context: &Context, inputs: &Inputs) -> Result<Vec<End>, Failure> {
-        let (mut memory, mut rounds) = (Memory::default(), 0);
+        let (mut memory, mut rounds) = (Memory::default(), 0_usize);
         let mut ask = |asked: &[(usize, f64)]| {
             rounds += 1;
             (context.progress)((rounds as f64 / (HALVINGS + 3) as f64).min(1.0));

@@ -36,7 +36,7 @@ pub fn limits<'a>() -> Columns<LimitRow<'a>> {
         .text("unit", "Unit of the value.", |row| row.parameter.unit.as_str())
         .shown("value", "", value, LimitRow::value)
         .flag("refused", "Whether anything is refused beyond it.", |row| row.end.refused.is_some())
-        .text("reason", reason, |row| row.reason())
+        .text("reason", reason, LimitRow::reason)
         .integer("evaluations", "Values that were tried to this side.", |row| row.end.evaluations)
 }
 

@@ -132,13 +132,13 @@ fn the_base_case_holds() {
 #[test]
 fn other_tools_and_tips_hold() {
     use crate::gear::geometry::pinion_cutter::PinionCutter;
+    type Change<'a> = (&'a str, &'a dyn Fn(&mut Case));
     let rules = Rules::new();
     let cutter = PinionCutter { teeth: 25, profile_shift: 0.1, addendum: 1.25, tip_radius: 0.2 };
     let protuberance = |gear: &mut Specification| {
         (gear.rack.protuberance, gear.rack.protuberance_angle) = (0.05, 8.0_f64.to_radians());
         (gear.rack.dedendum, gear.rack.tip_radius) = (1.4, 0.3);
     };
-    type Change<'a> = (&'a str, &'a dyn Fn(&mut Case));
     let changes: [Change; 5] = [
         ("pinion-type cutter", &|case| case.gears[0].cutter = Some(cutter)),
         ("protuberance", &|case| case.gears.iter_mut().for_each(protuberance)),
