@@ -2,6 +2,9 @@
 //!
 //! Must not know: HTML, terminals. Serves both.
 
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+
 use serde::Serialize;
 
 use super::{ReportError, floats, texts};
@@ -10,7 +13,7 @@ use declare::units::split_quantity;
 use studygraph::table::data::Table;
 
 /// A row, ready to be set.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Row {
     pub number: i64,
     pub label: String,
@@ -108,7 +111,25 @@ pub fn rows(table: &Table) -> Result<Vec<Row>, ReportError> {
     // Verdict by verdict, each in the order of the study.
     let mut order: Vec<usize> = (0..table.rows()).collect();
     order.sort_by_key(|&row| rank(&verdicts[row]));
-    Ok(order.into_iter().map(one).collect())
+    Ok(said_once(order.into_iter().map(one).collect()))
+}
+
+/// A reason of more characters than this is not read twice.
+const LONG: usize = 60;
+
+/// Long reasons that rows of one verdict share stand at the first of them; the others name it. Rows of another verdict may be
+/// hidden.
+fn said_once(mut rows: Vec<Row>) -> Vec<Row> {
+    let mut first: BTreeMap<(String, String), i64> = BTreeMap::new();
+    for row in rows.iter_mut().filter(|row| row.because.chars().count() > LONG) {
+        match first.entry((row.verdict.clone(), row.because.clone())) {
+            Entry::Occupied(known) => row.because = format!("for the reason of row {}", known.get()),
+            Entry::Vacant(new) => {
+                new.insert(row.number);
+            }
+        }
+    }
+    rows
 }
 
 /// How far apart two values are. Of two percentages that is points: in percent it would read as a share of one of them.
@@ -207,5 +228,26 @@ mod tests {
         words.sort_by_key(|word| rank(word));
         let sorted = ["unexplained", "outdated", "explained", "explained", "refuted", "refuted", "reproduced", "holds"];
         assert_eq!(words, sorted);
+    }
+    #[test]
+    fn a_long_reason_stands_at_the_first_row_of_a_verdict() {
+        let long = "the program stops its search where both curves agree to a ten-thousandth of the module";
+        let row = |number: i64, verdict: &str, because: &str| Row {
+            number,
+            verdict: verdict.to_owned(),
+            because: because.to_owned(),
+            ..Row::default()
+        };
+        let rows = [
+            row(4, "unexplained", long),
+            row(2, "explained", long),
+            row(3, "explained", "rounded"),
+            row(5, "explained", long),
+            row(6, "explained", "rounded"),
+            row(7, "explained", long),
+        ];
+        let said: Vec<String> = said_once(rows.to_vec()).into_iter().map(|row| row.because).collect();
+        let shared = "for the reason of row 2";
+        assert_eq!(said, [long, long, "rounded", shared, "rounded", shared]);
     }
 }

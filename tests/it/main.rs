@@ -20,6 +20,7 @@ mod fuzz;
 mod hunting;
 mod inspection;
 mod layering;
+mod limit;
 mod numbers;
 mod page;
 mod pressure;

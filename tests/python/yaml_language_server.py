@@ -100,6 +100,7 @@ beyond = {
     "protuberance_leaves_no_flank", "protuberance_as_steep_as_the_flank", "allowance_leaves_no_tool",
     "notch_without_radius", "cutter_pointed", "cutter_too_small", "cutter_too_round",
     "interval_of_no_width", "interval_beyond_the_range",
+    "limit_unknown_path", "limit_without_bounds", "limit_beside_nothing",
 }
 seen = []
 for path in sorted(pathlib.Path("tests/bad").glob("*.yaml")):

@@ -11,20 +11,19 @@ mod tables;
 mod words;
 
 use self::goal::{Goal, Met, Schemas};
-use self::parameters::{Parameter, Source, own_values, parameters};
+use self::parameters::{Parameter, own_values, parameters};
 use self::search::{Found, Solution};
 use self::tables::{ParameterRow, ResidualRow, SolutionRow, Summary};
-use crate::stage::formula::{Names, Outcome};
-use crate::stage::quantity::Number;
 use crate::stage::rows::chain;
+use crate::stage::rows::followed::Followed;
 use crate::stage::rows::points::{Memory, Points};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Named, Port, RowCount, Stage};
 use declare::Declared;
 use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure, Faults};
 use declare::record::Record;
-use declare::record::varied::{Axis, Varied};
-use declare::units::{parse_quantity, showing};
+use declare::record::varied::Varied;
+use declare::units::showing;
 use gearmesh::optimize::least_squares::Answers;
 use gearmesh::optimize::least_squares::uncertainty::{Uncertainty, digits};
 use studygraph::table::data::{Table, TableError};
@@ -77,9 +76,7 @@ struct Fitting {
     /// Of the stages that are computed anew.
     names: Vec<String>,
     points: Points,
-    axes: Vec<Axis>,
-    /// By axis.
-    sources: Vec<Source>,
+    followed: Followed,
     parameters: Vec<Parameter>,
     goals: Vec<Goal>,
     /// The values of the study in SI, where they are within the bounds.
@@ -103,7 +100,8 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
         .collect::<Result<_, Diagnostic>>()?;
     let goals = stated.meet.iter().zip(record.each_inside(Stated::NAMES.meet));
     let goals = Faults::collect(goals.map(|(met, record)| Goal::read(met, record, &stages)))?;
-    let (parameters, sources) = parameters(&stated.vary.axes)?;
+    let parameters = parameters(&stated.vary.axes)?;
+    let followed = Followed::new(&stated.vary.axes)?;
     let values: usize = goals.iter().map(|goal| goal.targets.len()).sum();
     // Whether intervals hold what meets a value is asked of any number of them.
     let are_intervals = parameters.iter().all(|parameter| parameter.is_interval);
@@ -124,44 +122,11 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let points = Points::new(&stated.vary, stages.iter().map(demand).collect())?;
     let names = stages.into_iter().map(|(name, _)| name).collect();
     let own = own_values(&stated.vary, &parameters);
-    let axes = stated.vary.axes;
     let (starts, steps) = (stated.starts, stated.steps);
-    Ok(Box::new(Fitting { of: stated.of, names, points, axes, sources, parameters, goals, own, starts, steps }))
+    Ok(Box::new(Fitting { of: stated.of, names, points, followed, parameters, goals, own, starts, steps }))
 }
 
 impl Fitting {
-    /// The values of all axes in SI for values of the parameters; those that follow are as their formulas say of the numbers in
-    /// the units of the columns.
-    fn values(&self, parameters: &[f64]) -> Result<Vec<f64>, String> {
-        let number = |name: &str, _row: usize| {
-            let at = self.parameters.iter().position(|parameter| parameter.name == name)?;
-            Some(Number::plain(self.parameters[at].shown(parameters[at])))
-        };
-        let names = Names { value: &number, row: 0, rows: 1 };
-        let one = |(axis, source): (&Axis, &Source)| {
-            let formula = match source {
-                Source::Free(at) => return Ok(parameters[*at]),
-                Source::Follows(formula) => formula,
-            };
-            let Outcome::Number(number) = formula.evaluate(names)? else {
-                return Err("a formula gives a number".to_owned());
-            };
-            let unit = &axis.unit;
-            let text = format!("{:e} {unit}", number.si);
-            let value = if unit.is_empty() {
-                number.si
-            } else {
-                parse_quantity(&text).map_err(|error| error.to_string())?.value
-            };
-            let (low, high) = axis.range;
-            if value < low || value > high {
-                return Err(format!("`{}` would be {text}, which `{}` cannot be", axis.name, axis.path));
-            }
-            Ok(value)
-        };
-        self.axes.iter().zip(&self.sources).map(one).collect()
-    }
-
     /// The numbers that are to be met at points of the parameters, in the units of their targets.
     fn found(
         &self,
@@ -169,7 +134,7 @@ impl Fitting {
         memory: &mut Memory,
         (context, inputs): (&Context, &Inputs),
     ) -> Result<Vec<Result<Vec<f64>, Diagnostic>>, Failure> {
-        let all: Vec<Result<Vec<f64>, String>> = points.iter().map(|point| self.values(point)).collect();
+        let all: Vec<Result<Vec<f64>, String>> = points.iter().map(|point| self.followed.values(point)).collect();
         let there: Vec<Vec<f64>> = all.iter().filter_map(|values| values.as_ref().ok()).cloned().collect();
         let mut tables = self.points.tables(&there, memory, (context, inputs))?.into_iter();
         let one = |values: Result<Vec<f64>, String>| {
@@ -193,7 +158,7 @@ impl Fitting {
 
     /// Names, units and paths of all that is varied.
     fn columns(&self) -> Vec<(String, String, String)> {
-        self.axes.iter().map(|axis| (axis.name.clone(), axis.unit.clone(), axis.path.clone())).collect()
+        self.followed.axes().iter().map(|axis| (axis.name.clone(), axis.unit.clone(), axis.path.clone())).collect()
     }
 
     fn shown(&self, deviations: Vec<f64>) -> Vec<f64> {
@@ -204,8 +169,9 @@ impl Fitting {
     }
 
     fn solution_row<'a>(&self, (number, solution): (usize, &'a Solution)) -> SolutionRow<'a> {
-        let values = self.values(&solution.fit.point).unwrap_or_else(|_| vec![f64::NAN; self.axes.len()]);
-        let values = self.axes.iter().zip(values).map(|(axis, si)| showing(&axis.unit)(si)).collect();
+        let axes = self.followed.axes();
+        let values = self.followed.values(&solution.fit.point).unwrap_or_else(|_| vec![f64::NAN; axes.len()]);
+        let values = axes.iter().zip(values).map(|(axis, si)| showing(&axis.unit)(si)).collect();
         let deviations = self.shown(solution.deviations(&Uncertainty::of(&solution.fit)));
         SolutionRow { number: number + 1, solution, values, deviations }
     }

@@ -5,6 +5,7 @@ pub mod export;
 pub mod fit;
 pub mod geometry;
 pub mod hunting;
+pub mod limit;
 pub mod modification;
 pub mod optimizer;
 pub mod rating;
@@ -32,6 +33,7 @@ pub const KINDS: &[&Kind] = &[
     &sweep::KIND,
     &scatter::KIND,
     &fit::KIND,
+    &limit::KIND,
     &accuracy::KIND,
     &rating::KIND,
     &stability::KIND,

@@ -17,7 +17,6 @@ use declare::record::Record;
 use declare::units::{ANGLE, LENGTH, STRESS, TORQUE, in_unit};
 use declare::{Declared, Words};
 use gearmesh::gear::geometry::Side;
-use gearmesh::gear::geometry::outline::tip::Tip;
 use gearmesh::gear::stability::{self, AXES, Case, Model, Point, Report, Rules};
 use gearmesh::optimize::latin_hypercube;
 use studygraph::stage::steps::Steps;
@@ -257,23 +256,11 @@ impl Stage for Stability {
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::of(inputs)?;
-        if let Some(side) = [Side::Pinion, Side::Gear].into_iter().find(|side| pair.side(*side).tip != Tip::Land) {
-            return Err(Failure::new(format!(
-                "the {} has a chamfer or a rounding at its tip; the second evaluation knows tips with a land only: check a \
-                 geometry without `tip`",
-                side.name()
-            )));
-        }
-        let other_tool = |side: &Side| {
-            let specification = &pair.side(*side).specification;
-            specification.cutter.is_some() || specification.rack.residual_undercut().abs() > 0.0
-        };
-        if let Some(side) = [Side::Pinion, Side::Gear].into_iter().find(other_tool) {
-            return Err(Failure::new(format!(
-                "the {} is cut by a rack with protuberance or stock, or by a pinion-type cutter; the second evaluation knows \
-                 plain racks only: check a geometry with one",
-                side.name()
-            )));
+        let [pinion, gear] = [Side::Pinion, Side::Gear].map(|side| pair.side(side).specification.rack);
+        if pinion != gear {
+            return Err(Failure::new(
+                "pinion and gear have racks of their own; cases have one for both: check a geometry with one `rack`",
+            ));
         }
         let mut base = Point::of(&pair);
         [base.torque, base.relief, base.relief_length, base.crowning] = self.load;

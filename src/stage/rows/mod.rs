@@ -6,6 +6,7 @@
 pub mod chain;
 pub mod computed;
 pub(crate) mod counting;
+pub mod followed;
 pub mod gathered;
 pub mod invalid;
 mod numbers;
@@ -180,7 +181,8 @@ impl Question<'_> {
 
 /// Rows have values of their own in every column.
 pub fn follows_nothing(column: &Column) -> Diagnostic {
-    Diagnostic::new(format!("`{}` follows from other columns, which `kind: fit` alone can have", column.axis.name))
+    let message = "follows from other columns, which `kind: fit` and `kind: limit` alone can have";
+    Diagnostic::new(format!("`{}` {message}", column.axis.name))
         .at(column.axis.values_place)
         .help("write its `values`, or `from` and `to`")
 }

@@ -73,5 +73,8 @@ fn wrong_fits_say_where_and_what_is_near() {
     let sweep = format!("  sweep:\n    kind: sweep\n    of: stiffness\n    outputs: [mean]\n    vary:{BORES}\n")
         .replace("from: 8 mm, to: 20 mm", "values: [8 mm]");
     let found = message(&[PAIR, STIFFNESS, &sweep]);
-    assert!(found.contains("follows from other columns, which `kind: fit` alone can have"), "{found}");
+    assert!(
+        found.contains("follows from other columns, which `kind: fit` and `kind: limit` alone can have"),
+        "{found}"
+    );
 }

@@ -78,3 +78,22 @@ fn every_tool_goes_from_end_to_end() {
         assert!(range.contains(&(mean / of_plain)), "{name}: {}", mean / of_plain);
     }
 }
+
+/// Tier: invariant; `stability` takes every tool: all that it checks holds or is refused, and digits are told of the plain racks alone.
+#[test]
+fn every_tool_is_stable() {
+    for (name, tool, _) in TOOLS {
+        let text = study(tool);
+        let pair = text.split("  k0:").next().unwrap();
+        let checks = "  stable: { kind: stability, pair: pair, relief: 8 um, relief_length: 3 mm, traps: false, axes: { torque: [1e-6 N m, 50 N m], pinion_teeth: [20, 60] } }\n";
+        let ran = walk(&load(&format!("{pair}{checks}")));
+        let checks = table(&ran, "stable", "checks");
+        let verdicts = checks.texts("verdict");
+        let broken: Vec<_> = (0..checks.rows()).filter(|row| verdicts[*row] == "broken").collect();
+        let said: Vec<_> =
+            broken.iter().map(|row| (&checks.texts("case")[*row], &checks.texts("invariant")[*row])).collect();
+        assert!(broken.is_empty() && checks.rows() > 30, "{name}: {said:?}");
+        let is_known = ["plain", "allowance covered"].contains(name);
+        assert_eq!(table(&ran, "stable", "digits").rows() > 0, is_known, "{name}");
+    }
+}

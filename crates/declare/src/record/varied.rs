@@ -174,6 +174,18 @@ impl Varied {
         }
     }
 
+    /// The number that the study itself has where an axis is; none where it has nothing there, or several.
+    #[must_use]
+    pub fn own(&self, axis: &Axis) -> Option<f64> {
+        let stage = self.stages.get(axis.stage)?;
+        match &axis.slot.same_in(&stage.filled, &stage.record)?.value {
+            Value::Quantity(value) | Value::Number(value) => Some(*value),
+            Value::Integer(value) => Some(*value as f64),
+            Value::Axis(values) if values.len() == 1 => Some(values[0]),
+            _ => None,
+        }
+    }
+
     /// What all values have in common: the stages without what is varied in them, and which fields are.
     pub fn write_shared(&self, writer: &mut Writer) {
         writer.text("varied").count(self.stages.len());
@@ -272,6 +284,29 @@ impl Slot {
         Some(entry)
     }
 
+    /// What another record of the same stage has where this one has the slot. A field that one of them leaves out moves those
+    /// after it, so fields are found by their names.
+    #[must_use]
+    pub fn same_in<'r>(&self, own: &Record, other: &'r Record) -> Option<&'r PlacedValue> {
+        let (first, rest) = self.0.split_first()?;
+        let (name, entry) = own.fields.get(*first)?;
+        let (mut here, mut there) = (entry, other.entry(name)?);
+        for step in rest {
+            (here, there) = match (&here.value, &there.value) {
+                (Value::List(items), Value::List(others)) => (items.get(*step)?, others.get(*step)?),
+                (Value::Map(entries), Value::Map(others)) => {
+                    let (label, entry) = entries.get(*step)?;
+                    (entry, &others.iter().find(|(known, _)| known == label)?.1)
+                }
+                (one, two) => {
+                    let (name, entry) = one.record()?.fields.get(*step)?;
+                    (entry, two.record()?.entry(name)?)
+                }
+            };
+        }
+        Some(there)
+    }
+
     /// The same to be changed.
     pub fn entry_mut<'r>(&self, record: &'r mut Record) -> Option<&'r mut PlacedValue> {
         let (first, rest) = self.0.split_first()?;
@@ -361,6 +396,23 @@ mod tests {
         assert_eq!(Slot::of_place(&record, at(6)), None, "a member is no value");
         assert_eq!(Slot(vec![1, 2, 0]).entry(&record), None);
         assert!(Slot(vec![0, 1]).entry_mut(&mut record).is_none() && Slot::default().entry(&record).is_none());
+    }
+
+    #[test]
+    fn the_study_s_own_value_is_found_whatever_it_leaves_out() {
+        // The study says neither `length`, which is varied too, nor `pair`; of what is varied the last comes after both.
+        let mut filled = record();
+        let Some(entry) = Slot(vec![1, 1, 1]).entry_mut(&mut filled) else { panic!("there is a relief") };
+        if let Value::Member(_, relief) = &mut entry.value {
+            relief.fields.insert(0, ("length", self::entry(Value::Quantity(3e-3), 8)));
+        }
+        let mut own = record();
+        own.fields.remove(0);
+        let slots = [Slot(vec![1, 1, 1, 0]), Slot(vec![1, 1, 1, 1])];
+        let stage = Stage { name: "s".into(), kind: "k", record: own, filled, reads: vec![] };
+        let varied = Varied { nearby: Vec::new(), stages: vec![stage], axes: Vec::new() };
+        let found = slots.map(|slot| varied.own(&Axis { slot, ..axis() }));
+        assert_eq!(found, [None, Some(1e-6)]);
     }
 
     #[test]

@@ -1,11 +1,9 @@
-//! What is fitted: fields within their bounds, and fields that follow from them.
+//! What is fitted: fields within their bounds.
 //!
 //! Must not know: what is met.
 
 use super::tables;
-use crate::stage::formula::Formula;
 use declare::error::Diagnostic;
-use declare::record::Value;
 use declare::record::varied::{Axis, Form, Spread, Values, Varied};
 use declare::units::showing;
 
@@ -28,18 +26,11 @@ impl Parameter {
     }
 }
 
-/// Where the value of a varied field comes from.
-pub enum Source {
-    /// Index of the parameter.
-    Free(usize),
-    Follows(Formula),
-}
-
-/// The parameters, and where the value of each axis comes from.
+/// Those of the fields that follow from nothing.
 ///
 /// # Errors
-/// A field that cannot be fitted, or a formula that cannot be read.
-pub fn parameters(axes: &[Axis]) -> Result<(Vec<Parameter>, Vec<Source>), Diagnostic> {
+/// A field that cannot be fitted.
+pub fn parameters(axes: &[Axis]) -> Result<Vec<Parameter>, Diagnostic> {
     let mut parameters: Vec<Parameter> = Vec::new();
     for axis in axes {
         let clashes = tables::RESERVED.contains(&axis.name.as_str())
@@ -69,23 +60,7 @@ pub fn parameters(axes: &[Axis]) -> Result<(Vec<Parameter>, Vec<Source>), Diagno
         let (name, path, unit) = (axis.name.clone(), axis.path.clone(), axis.unit.clone());
         parameters.push(Parameter { name, path, unit, bounds, is_interval });
     }
-    if parameters.is_empty() {
-        return Err(Diagnostic::new("nothing is free: every field follows from others").at(axes[0].values_place));
-    }
-    let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
-    let source = |axis: &Axis| {
-        let Values::Follows(text) = &axis.values else {
-            return Ok(Source::Free(names.iter().position(|name| *name == axis.name).unwrap_or_default()));
-        };
-        let wrong = |message: String| Diagnostic::new(message).at(axis.values_place);
-        let formula = Formula::parse(text, &names).map_err(wrong)?;
-        if formula.is_claim() {
-            return Err(wrong(format!("`{text}` is true or false; `follows` is a number")));
-        }
-        Ok(Source::Follows(formula))
-    };
-    let sources = axes.iter().map(source).collect::<Result<Vec<_>, _>>()?;
-    Ok((parameters, sources))
+    Ok(parameters)
 }
 
 /// The values that the study has; none where it has several of a field, or one outside of the bounds.
@@ -93,12 +68,7 @@ pub fn own_values(varied: &Varied, parameters: &[Parameter]) -> Option<Vec<f64>>
     let free = varied.axes.iter().filter(|axis| !matches!(axis.values, Values::Follows(_)));
     free.zip(parameters)
         .map(|(axis, parameter)| {
-            let entry = axis.slot.entry(&varied.stages[axis.stage].record)?;
-            let value = match &entry.value {
-                Value::Quantity(value) | Value::Number(value) => *value,
-                Value::Axis(values) if values.len() == 1 => values[0],
-                _ => return None,
-            };
+            let value = varied.own(axis)?;
             (parameter.bounds.0 <= value && value <= parameter.bounds.1).then_some(value)
         })
         .collect()

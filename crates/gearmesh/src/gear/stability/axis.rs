@@ -8,6 +8,8 @@ use std::f64::consts::PI;
 
 use super::{Case, Model};
 use crate::gear::geometry::involute::{inverse_involute, involute};
+use crate::gear::geometry::outline::tip::Tip;
+use crate::gear::geometry::pinion_cutter::PinionCutter;
 use crate::gear::geometry::{GearPair, Rack, Side, Specification};
 use crate::gear::material::Material;
 
@@ -26,13 +28,17 @@ pub struct Point {
     pub thickness_allowance: [f64; 2],
     /// The rack of both gears, whose addendum and dedendum give way to `contact_ratio`.
     pub rack: Rack,
+    /// What shapes each gear, where no rack cuts it.
+    pub cutters: [Option<PinionCutter>; 2],
+    /// What is done to the corners of the tips \[m\]; in modules it stays as it is.
+    pub tips: [Tip; 2],
     /// How far the tip circle is beyond m(z/2 + h_aP* + x) \[modules\].
     pub longer: [f64; 2],
     /// Addendum and dedendum follow from it where it is given.
     pub contact_ratio: Option<f64>,
     /// b \[m\].
     pub face_width: [f64; 2],
-    /// Bore radius over root radius.
+    /// Bore radius over root radius; of a gear that is shaped, over the one that the rack would cut.
     pub bore: [f64; 2],
     /// E and ν.
     pub material: [Material; 2],
@@ -83,6 +89,12 @@ const fn linear(
 }
 
 const DEGREE: f64 = PI / 180.0;
+
+/// r_f of the rack: m(z/2 − h_fP* + x_E).
+fn rack_root_radius(specification: &Specification) -> f64 {
+    let Specification { module, teeth, rack, .. } = *specification;
+    module * (0.5 * f64::from(teeth) - rack.dedendum + specification.generating_profile_shift())
+}
 
 /// Every axis; a sample sets them in this order.
 pub const AXES: &[Axis] = &[
@@ -152,6 +164,8 @@ impl Point {
             shift: both(|gear| gear.specification.profile_shift),
             thickness_allowance: both(|gear| gear.specification.thickness_allowance / gear.specification.module),
             rack: specification.rack,
+            cutters: [Side::Pinion, Side::Gear].map(|side| pair.side(side).specification.cutter),
+            tips: [Side::Pinion, Side::Gear].map(|side| pair.side(side).tip),
             longer: both(|gear| {
                 let Specification { teeth, module, profile_shift, rack, .. } = gear.specification;
                 let longer = gear.tip_radius / module - 0.5 * f64::from(teeth) - rack.addendum - profile_shift;
@@ -160,7 +174,11 @@ impl Point {
             }),
             contact_ratio: None,
             face_width: both(|gear| gear.specification.face_width),
-            bore: both(|gear| gear.specification.bore_radius / gear.root_radius),
+            bore: both(|gear| {
+                let own = &gear.specification;
+                let root = if own.cutter.is_some() { rack_root_radius(own) } else { gear.root_radius };
+                own.bore_radius / root
+            }),
             material: [Side::Pinion, Side::Gear].map(|side| pair.side(side).specification.material),
             torque: 0.0,
             relief: 0.0,
@@ -190,6 +208,7 @@ impl Point {
     fn set_module(&mut self, module: f64) {
         let factor = module / self.module;
         self.module = module;
+        self.tips = self.tips.map(|tip| tip.scaled(factor));
         self.face_width = self.face_width.map(|width| width * factor);
         self.relief *= factor;
         self.relief_length *= factor;
@@ -212,7 +231,7 @@ impl Point {
                 module: self.module,
                 pressure_angle: self.pressure_angle,
                 profile_shift: self.shift[side],
-                cutter: None,
+                cutter: self.cutters[side],
                 thickness_allowance: self.thickness_allowance[side] * self.module,
                 rack,
                 tip_radius: (self.longer[side] != 0.0).then_some(tip),
@@ -226,6 +245,7 @@ impl Point {
             axis,
             place,
             gears: [gear(0), gear(1)],
+            tips: self.tips,
             torque: self.torque,
             relief: self.relief,
             relief_length: self.relief_length,
@@ -248,7 +268,7 @@ impl Point {
             rack.dedendum = rack.dedendum.max(rack.addendum + 0.25);
         }
         let (sine, cosine) = libm::sincos(self.pressure_angle);
-        let full_round = (0.25 * PI * cosine - rack.dedendum * sine) / (1.0 - sine);
+        let full_round = (0.25 * PI * cosine - rack.dedendum * sine + rack.residual_undercut()) / (1.0 - sine);
         if full_round > 0.0 {
             rack.tip_radius = rack.tip_radius.min(full_round);
         }

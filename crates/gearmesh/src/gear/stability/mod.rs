@@ -3,7 +3,8 @@
 //! A case is a pair, a load, modifications, and a model. [`check()`] runs the chain from geometry to transmission error on
 //! it and gives one finding per invariant: `Holds`, `Broken`, or `Refused` where physics or the model excludes the case,
 //! with the reason. Limits come from rounding: a small multiple of ε times the condition number, which is found by
-//! changing the inputs of a second evaluation in twice the precision. Must not know: tables, studies.
+//! changing the inputs of a second evaluation in twice the precision, or of the kernels where it does not know the teeth. Must not
+//! know: tables, studies.
 
 mod axis;
 mod contact;
@@ -23,6 +24,7 @@ pub use trap::{Continuity, continuity, traps};
 use super::compliance::energy::{Arm, Energy, GearBody};
 use super::compliance::{Assumptions, ContactLaw, Method, PairCompliance};
 use super::contact::{CornerContact, SliceCoupling};
+use super::geometry::outline::tip::Tip;
 use super::geometry::{GearPair, Specification};
 use super::modification::curve::Curve;
 use super::modification::lead_crowning::LeadCrowning;
@@ -62,6 +64,8 @@ pub struct Case {
     pub place: f64,
     /// Pinion, gear; without backlash.
     pub gears: [Specification; 2],
+    /// What is done to the corners of their tips.
+    pub tips: [Tip; 2],
     /// T on the pinion \[N m\].
     pub torque: f64,
     /// Linear tip relief of both gears, and its roll length.
@@ -178,7 +182,7 @@ impl Case {
     /// # Errors
     /// Why there is none.
     pub fn pair(&self) -> Result<GearPair, String> {
-        GearPair::new(self.gears[0], self.gears[1], None).map_err(|error| error.to_string())
+        GearPair::with_tips(self.gears, self.tips, None).map_err(|error| error.to_string())
     }
 
     /// The same modifications on both gears.
@@ -216,7 +220,20 @@ impl Case {
         self.gears.iter().map(|gear| self.crowning * (width / gear.face_width) * (width / gear.face_width)).sum()
     }
 
-    /// Why the second evaluation does not cover it.
+    /// Why the second evaluation does not cover the teeth.
+    fn other_teeth(&self) -> Option<&'static str> {
+        if self.gears.iter().any(|gear| gear.cutter.is_some()) {
+            Some("the second evaluation knows gears that a rack cuts only")
+        } else if self.gears.iter().any(|gear| gear.rack.residual_undercut() != 0.0) {
+            Some("the second evaluation knows racks without protuberance and stock only")
+        } else if self.tips.iter().any(|tip| *tip != Tip::Land) {
+            Some("the second evaluation knows tips with a land only")
+        } else {
+            None
+        }
+    }
+
+    /// Why the second evaluation does not cover the loaded pair.
     fn not_covered(&self) -> Option<&'static str> {
         let Model { assumptions, settings, .. } = &self.model;
         let is_known = |energy: &Energy| energy.body == GearBody::Sainsot && energy.arm == Arm::RootCircle;
@@ -307,6 +324,11 @@ pub fn check(case: &Case, rules: &Rules) -> Report {
             return report;
         }
     };
+    if let Some(reason) = case.other_teeth() {
+        report.findings.push(Finding::refused("second evaluation", reason));
+        check_symmetry(case, values, symmetry::conditions(case, values), &mut report);
+        return report;
+    }
     let inputs = case.inputs();
     let exact = precise::evaluate(&inputs, &rules.fine);
     let mut conditions = precise::conditions(&inputs, &rules.coarse);
@@ -317,8 +339,13 @@ pub fn check(case: &Case, rules: &Rules) -> Report {
     }
     digits::check(case, &built, values, (&exact, &conditions), &mut report);
     let [.., mean, peak_to_peak] = conditions;
+    check_symmetry(case, values, [mean, peak_to_peak], &mut report);
+    report
+}
+
+/// `conditions` are those of mean and peak-to-peak.
+fn check_symmetry(case: &Case, values: [f64; 2], conditions: [f64; 2], report: &mut Report) {
     // Where bodies couple, teeth that all turn with one bore make the matrix worse than the pair without it is.
     let matrix = if case.model.assumptions.coupled { contact::condition_found(&report.findings) } else { 1.0 };
-    symmetry::check(case, values, [mean, peak_to_peak].map(|condition| condition.max(matrix)), &mut report.findings);
-    report
+    symmetry::check(case, values, conditions.map(|condition| condition.max(matrix)), &mut report.findings);
 }

@@ -17,6 +17,41 @@ pub(super) fn values(case: &Case) -> Result<[f64; 2], String> {
     Ok([summary.mean, summary.peak_to_peak])
 }
 
+/// Relative changes of both per relative change of what rounding touches first, summed, by the kernels themselves: as
+/// [`super::precise::conditions`] where there is no second evaluation. A change that makes the case impossible counts for nothing.
+pub(super) fn conditions(case: &Case, here: [f64; 2]) -> [f64; 2] {
+    // Far above what the kernels lose, far below what a condition number need be known to.
+    const STEP: f64 = 1e-6;
+    fn shorter(case: &mut Case, gear: usize) {
+        let of = &mut case.gears[gear];
+        let natural = of.module * (0.5 * f64::from(of.teeth) + of.rack.addendum + of.profile_shift);
+        of.tip_radius = Some(of.tip_radius.unwrap_or(natural) / (1.0 + STEP));
+    }
+    let changes: [fn(&mut Case); 9] = [
+        |case| case.gears.iter_mut().for_each(|gear| gear.pressure_angle *= 1.0 + STEP),
+        |case| case.gears[0].profile_shift += STEP,
+        |case| case.gears[1].profile_shift += STEP,
+        |case| shorter(case, 0),
+        |case| shorter(case, 1),
+        |case| case.torque *= 1.0 + STEP,
+        |case| case.relief *= 1.0 + STEP,
+        |case| case.relief_length += case.gears[0].module * f64::from(case.gears[0].teeth) * STEP,
+        |case| case.crowning *= 1.0 + STEP,
+    ];
+    let mut sums = [0.0; 2];
+    for change in changes {
+        let mut changed = case.clone();
+        change(&mut changed);
+        let Ok(found) = values(&changed) else { continue };
+        for (sum, (found, here)) in sums.iter_mut().zip(found.into_iter().zip(here)) {
+            if here != 0.0 {
+                *sum += ((found - here) / here).abs() / STEP;
+            }
+        }
+    }
+    sums
+}
+
 /// The larger of the two relative differences, each in units of what its condition number lets through.
 fn difference(found: [f64; 2], expected: [f64; 2], conditions: [f64; 2]) -> f64 {
     let one = |index: usize| {
@@ -53,6 +88,7 @@ fn scaled(case: &Case) -> (Case, f64) {
             gear.tip_radius = gear.tip_radius.map(|radius| radius * factor);
             gear.thickness_allowance *= factor;
         }
+        other.tips = other.tips.map(|tip| tip.scaled(factor));
         other.relief *= factor;
         other.relief_length *= factor;
         other.crowning *= factor;
@@ -66,6 +102,7 @@ fn scaled(case: &Case) -> (Case, f64) {
 fn swapped(case: &Case) -> (Case, f64) {
     let mut other = case.clone();
     other.gears.swap(0, 1);
+    other.tips.swap(0, 1);
     other.torque *= f64::from(case.gears[1].teeth) / f64::from(case.gears[0].teeth);
     (other, 1.0)
 }

@@ -60,6 +60,7 @@ pub(super) fn base() -> Case {
         axis: "trap",
         place: 0.0,
         gears: [gear(19, 20e-3), gear(48, 18e-3)],
+        tips: [Tip::Land; 2],
         torque: 50.0,
         relief: 0.0,
         relief_length: 0.0,
@@ -124,6 +125,60 @@ fn the_base_case_holds() {
         // None is left out where nothing is wrong.
         assert_eq!(report.findings.iter().map(|finding| finding.invariant).collect::<Vec<_>>(), CHECKED.concat());
         assert!(report.findings.iter().all(|finding| finding.verdict == Verdict::Holds));
+    }
+}
+
+/// Tier: invariant; teeth that the second evaluation does not know meet all that needs none of it.
+#[test]
+fn other_tools_and_tips_hold() {
+    use crate::gear::geometry::pinion_cutter::PinionCutter;
+    type Change<'a> = (&'a str, &'a dyn Fn(&mut Case));
+    let rules = Rules::new();
+    let cutter = PinionCutter { teeth: 25, profile_shift: 0.1, addendum: 1.25, tip_radius: 0.2 };
+    let protuberance = |gear: &mut Specification| {
+        (gear.rack.protuberance, gear.rack.protuberance_angle) = (0.05, 8.0_f64.to_radians());
+        (gear.rack.dedendum, gear.rack.tip_radius) = (1.4, 0.3);
+    };
+    let changes: [Change; 5] = [
+        ("pinion-type cutter", &|case| case.gears[0].cutter = Some(cutter)),
+        ("protuberance", &|case| case.gears.iter_mut().for_each(protuberance)),
+        ("chamfer", &|case| case.tips[0] = Tip::Chamfer(0.3e-3)),
+        ("rounding", &|case| case.tips = [Tip::Rounding(0.2e-3); 2]),
+        ("semi-topping", &|case| case.tips[1] = Tip::SemiTopping { angle: 45_f64.to_radians(), height: 0.3e-3 }),
+    ];
+    for (name, change) in changes {
+        let mut case = base();
+        (case.relief, case.relief_length) = (9e-6, 4e-3);
+        change(&mut case);
+        let report = check(&case, &rules);
+        let wanted = [CHECKED[0], &["second evaluation"], CHECKED[2]].concat();
+        assert_eq!(report.findings.iter().map(|finding| finding.invariant).collect::<Vec<_>>(), wanted, "{name}");
+        let not_held = report.findings.iter().filter(|finding| finding.verdict != Verdict::Holds);
+        let not_held: Vec<_> = not_held.map(|finding| (finding.invariant, finding.verdict)).collect();
+        assert_eq!(not_held, [("second evaluation", Verdict::Refused)], "{name}: {:?}", report.findings);
+        // The point that such a pair stands for is that pair.
+        let pair = case.pair().unwrap();
+        let again = Point { torque: 50.0, relief: 9e-6, relief_length: 4e-3, ..Point::of(&pair) };
+        let again = again.case("", "trap", 0.0, &case.model).pair().unwrap();
+        assert!((again.contact_ratio / pair.contact_ratio - 1.0).abs() < 1e-12, "{name}");
+        assert!((again.pinion.form_radius / pair.pinion.form_radius - 1.0).abs() < 1e-12, "{name}");
+        assert!((again.pinion.specification.bore_radius / case.gears[0].bore_radius - 1.0).abs() < 1e-12, "{name}");
+    }
+}
+
+/// Tier: second method; condition numbers by the kernels are those of the second evaluation, where there is one.
+#[test]
+fn condition_numbers_of_the_kernels_are_those_of_the_second_evaluation() {
+    for (relief, crowning, torque) in [(0.0, 0.0, 50.0), (9e-6, 0.0, 50.0), (9e-6, 20e-6, 20.0)] {
+        let mut case = base();
+        (case.relief, case.relief_length, case.crowning, case.torque) = (relief, 4e-3, crowning, torque);
+        let here = symmetry::values(&case).unwrap();
+        let found = symmetry::conditions(&case, here);
+        let [.., mean, peak_to_peak] = precise::conditions(&case.inputs(), &Rule::new(10, 12));
+        println!("{found:?} {mean} {peak_to_peak}");
+        for (found, wanted) in found.into_iter().zip([mean, peak_to_peak]) {
+            assert!((0.4..2.5).contains(&(found / wanted)), "{found} for {wanted}");
+        }
     }
 }
 

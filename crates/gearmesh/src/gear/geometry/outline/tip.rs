@@ -34,6 +34,19 @@ pub enum Tip {
     },
 }
 
+impl Tip {
+    /// The same on a gear of other size: all lengths times `factor`.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        match self {
+            Self::Land => Self::Land,
+            Self::Chamfer(size) => Self::Chamfer(size * factor),
+            Self::Rounding(radius) => Self::Rounding(radius * factor),
+            Self::SemiTopping { angle, height } => Self::SemiTopping { angle, height: height * factor },
+        }
+    }
+}
+
 /// The flank ends in a corner on the tip circle.
 #[derive(Clone, Debug, PartialEq, Declared)]
 #[declared(name = "land")]
