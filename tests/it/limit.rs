@@ -214,6 +214,18 @@ fn tooth_numbers_are_whole() {
     assert!(lower.1.unwrap().contains("below the root radius 12.75 mm"));
 }
 
+/// Tier: closed form; what follows must be whole where its field is: 1.5 times an odd number of teeth is none, the study's 19 too.
+#[test]
+fn what_follows_is_whole_where_its_field_is() {
+    let vary = "
+      teeth: { field: pair.pinion.teeth, from: 18, to: 22 }
+      other: { field: pair.gear.teeth, follows: 1.5 * teeth }";
+    let pair = PAIR.replace("bore_radius: 38 mm", "bore_radius: 10 mm");
+    let [lower, upper] = ends(&ran(&[&pair, &limit("pair", vary, "")]), "teeth");
+    assert_eq!((lower, upper.0), ((18.0, None), 18.0));
+    assert_eq!(upper.1.unwrap(), "`other` would be 2.85e1, which `pair.gear.teeth` cannot be");
+}
+
 /// Tier: second method; rows of a sweep over the same field have numbers inside of the ends and the same reasons beyond them.
 #[test]
 fn a_sweep_is_refused_beyond_the_same_ends() {
