@@ -22,6 +22,8 @@ pub struct Varied {
     pub stages: Vec<Stage>,
     /// In the order of the study; no two have one name.
     pub axes: Vec<Axis>,
+    /// Stages that depend on what varies, and stay as in the study all the same.
+    pub held: Vec<String>,
 }
 
 /// A stage that comes out otherwise.
@@ -410,7 +412,7 @@ mod tests {
         own.fields.remove(0);
         let slots = [Slot(vec![1, 1, 1, 0]), Slot(vec![1, 1, 1, 1])];
         let stage = Stage { name: "s".into(), kind: "k", record: own, filled, reads: vec![] };
-        let varied = Varied { nearby: Vec::new(), stages: vec![stage], axes: Vec::new() };
+        let varied = Varied { stages: vec![stage], ..Varied::default() };
         let found = slots.map(|slot| varied.own(&Axis { slot, ..axis() }));
         assert_eq!(found, [None, Some(1e-6)]);
     }
@@ -422,9 +424,9 @@ mod tests {
             axis().put(&mut filled, first);
             let stage = Stage { name: "s".into(), kind: "k", record: record(), filled, reads: vec![None] };
             Varied {
-                nearby: Vec::new(),
                 stages: vec![stage],
                 axes: vec![Axis { values: Values::Each(values), ..axis() }],
+                ..Varied::default()
             }
         };
         let digests = |varied: &Varied| {

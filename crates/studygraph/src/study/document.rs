@@ -198,7 +198,10 @@ impl<'a> Tree<'a> {
                     return Err(Diagnostic::new("this alias stands inside the value it stands for").at(place));
                 };
                 self.count(grown.nodes, grown.levels, place)?;
-                grown.node.place = place;
+                // A number stands where it is written, as those inside of lists and mappings do.
+                if !matches!(grown.node.content, Content::Scalar { .. }) {
+                    grown.node.place = place;
+                }
                 self.finish(grown, 0)
             }
             _ => Ok(()),

@@ -21,8 +21,8 @@ use declare::record::{PlacedValue, Record, Value};
 struct Link {
     name: String,
     kind: &'static Kind,
-    /// Its intervals stand at marks.
-    record: Record,
+    /// Its intervals stand at marks. None of a stage whose kind is not computed anew.
+    record: Option<Record>,
     intervals: Vec<Interval>,
     /// The stages that it refers to.
     reads: Vec<String>,
@@ -80,7 +80,7 @@ fn gather<'s>(value: &Value, stages: Stages<'s>, named: &mut BTreeSet<&'s str>) 
     }
 }
 
-/// Gathers a stage after all that it reads, as far as they are of these kinds; `open` are those that are being gathered.
+/// Gathers a stage after all that it reads; those of these kinds are computed anew. `open` are those that are being gathered.
 fn link(
     stages: Stages,
     name: &str,
@@ -94,14 +94,13 @@ fn link(
     }
     let Some(pair) = stages.pairs.iter().find(|pair| pair.key == name) else { return Ok(()) };
     let place = pair.place;
-    let Ok((kind, stage)) = stages.plain(name, place) else { return Ok(()) };
-    if !kinds.contains(&kind.name) {
-        return Ok(());
-    }
+    let Ok((kind, stage)) = stages.any(name, place) else { return Ok(()) };
+    let is_anew = kinds.contains(&kind.name);
     open.push(name.to_owned());
-    let mut decoder = Decoder::new("where an optimiser chooses", Stages::default());
-    decoder.marks_intervals = true;
+    let mut decoder = Decoder::new("where an optimiser chooses", if is_anew { Stages::default() } else { stages });
+    decoder.marks_intervals = is_anew;
     let record = decoder.record(&stage.node, kind.fields, &["kind"], &quote(name), stage.place)?;
+    let record = is_anew.then_some(record);
     let (references, intervals) = (decoder.references, decoder.intervals);
     for reference in &references {
         link(stages, &reference.stage, kinds, open, links)?;
@@ -114,15 +113,20 @@ fn link(
 
 /// The stages that have an interval and those that read one of them, each after all that it reads, and the intervals.
 fn varied(links: Vec<Link>) -> Varied {
-    let mut kept: Vec<Link> = Vec::new();
-    for link in links {
-        if !link.intervals.is_empty() || link.reads.iter().any(|read| kept.iter().any(|other| other.name == *read)) {
-            kept.push(link);
+    let mut found = Varied::default();
+    let mut kept: Vec<(Link, Record)> = Vec::new();
+    for mut link in links {
+        let is_kept = |read: &String| kept.iter().any(|(other, _)| other.name == *read) || found.held.contains(read);
+        if link.intervals.is_empty() && !link.reads.iter().any(is_kept) {
+            continue;
+        }
+        match link.record.take() {
+            Some(record) => kept.push((link, record)),
+            None => found.held.push(link.name),
         }
     }
-    let names: Vec<String> = kept.iter().map(|link| link.name.clone()).collect();
-    let mut found = Varied::default();
-    for (index, Link { name, kind, mut record, intervals, reads }) in kept.into_iter().enumerate() {
+    let names: Vec<String> = kept.iter().map(|(link, _)| link.name.clone()).collect();
+    for (index, (Link { name, kind, intervals, reads, .. }, mut record)) in kept.into_iter().enumerate() {
         let axes = intervals.iter().enumerate();
         found.axes.extend(axes.filter_map(|(at, interval)| interval.axis(&name, index, &mut record, mark(at))));
         found.stages.push(Stage {

@@ -24,6 +24,19 @@ impl<'a> Stages<'a> {
     /// # Errors
     /// When there is no such stage, it has no kind, or it replaces fields of another stage itself.
     pub fn plain(&self, name: &str, place: Place) -> Result<(&'static Kind, &'a KeyValue), Diagnostic> {
+        let (kind, stage) = self.any(name, place)?;
+        if kind.fields.iter().any(replaces) {
+            let message = format!("{} replaces fields of another stage itself, so none of its own can be", quote(name));
+            return Err(Diagnostic::new(message).at(place));
+        }
+        Ok((kind, stage))
+    }
+
+    /// The same, whatever its fields hold.
+    ///
+    /// # Errors
+    /// When there is no such stage, or it has no kind.
+    pub fn any(&self, name: &str, place: Place) -> Result<(&'static Kind, &'a KeyValue), Diagnostic> {
         let stage = self.pairs.iter().find(|pair| pair.key == name).ok_or_else(|| {
             let names = self.pairs.iter().map(|pair| pair.key.as_str());
             Diagnostic::new(format!("there is no stage {}", quote(name))).at(place).help(suggest(name, names))
@@ -37,10 +50,6 @@ impl<'a> Stages<'a> {
         let Some(kind) = kind else {
             return Err(Diagnostic::new(format!("stage {} has no kind that is known", quote(name))).at(stage.place));
         };
-        if kind.fields.iter().any(replaces) {
-            let message = format!("{} replaces fields of another stage itself, so none of its own can be", quote(name));
-            return Err(Diagnostic::new(message).at(place));
-        }
         Ok((kind, stage))
     }
 

@@ -49,7 +49,10 @@ pub fn beside(path: &Path, shown: &str, (text, place, study): (&str, Place, &Pat
         let wanted = path.file_name().unwrap_or_default().to_string_lossy();
         let others = names(folder_of(path), &["csv", "CSV"]);
         refused(match nearest(&wanted, others.iter().map(String::as_str)) {
-            Some(near) => found.help(format!("did you mean `{near}`?")),
+            Some(near) => {
+                let near = Path::new(shown).with_file_name(near).display().to_string();
+                found.help(format!("did you mean `{}`?", near.replace('\\', "/")))
+            }
             None => found.help("a file is looked for from the folder of the study on"),
         })
     })?;

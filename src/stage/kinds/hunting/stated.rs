@@ -97,7 +97,8 @@ impl StatedDeviations {
             );
             return Err(Diagnostic::new(message).at(place).help("keep one of them").into());
         }
-        if self.cumulative.is_none() && self.single.is_none() && self.flanks.as_ref().is_none_or(Vec::is_empty) {
+        let is_empty = |given: &Option<Placed<Vec<f64>>>| given.as_ref().is_none_or(|given| given.value.is_empty());
+        if is_empty(&self.cumulative) && is_empty(&self.single) && self.flanks.as_ref().is_none_or(Vec::is_empty) {
             let message = format!(
                 "give `{}` or `{}` of the {name}'s teeth, or some of their `{}`",
                 names.cumulative, names.single, names.flanks

@@ -140,7 +140,8 @@ pub fn summary() -> Columns<Case> {
     let composite =
         "Total transmission deviation F'_i: largest less smallest transmission error of the hunting period.";
     let tooth = "Tooth-to-tooth transmission deviation f'_i: the largest range within a base pitch.";
-    let plain = "Peak-to-peak of the same design whose teeth do not deviate from it.";
+    let plain = "Peak-to-peak of the same design whose teeth do not deviate from it, found at its extremes as in `ste`; peak_to_peak is that of \
+                 the positions.";
     let pitches = "Base pitches of the hunting period, lcm(z1, z2): after them the same teeth meet again.";
     keyed(SUMMARY, "What the transmission error of each hunting period amounts to.", |row: &Case| row)
         .integer("pitches", pitches, |row| row.extent.pitches)

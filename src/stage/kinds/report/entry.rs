@@ -4,7 +4,7 @@
 
 mod units;
 
-use super::rounded::Range;
+use super::rounded::Inside;
 use super::stated::{Expected, Published, StatedProof};
 use super::verdict::{Comparison, Verdict};
 use crate::stage::Inputs;
@@ -59,7 +59,7 @@ pub struct ReportEntry {
 /// What came of an entry.
 pub struct Finding<'a> {
     entry: &'a ReportEntry,
-    range: Option<Range>,
+    inside: Option<Inside>,
     comparison: Comparison,
     pub verdict: Verdict,
     /// In how many rows a claim holds, in words.
@@ -88,7 +88,7 @@ impl Finding<'_> {
 
     /// What is said of that.
     fn rounding(&self) -> String {
-        self.range.as_ref().map_or_else(String::new, |range| range.said(&self.comparison, self.entry.unit()))
+        self.inside.as_ref().map_or_else(String::new, |inside| inside.said(&self.comparison, self.entry.unit()))
     }
 
     /// The value the study stands by, and its tolerance.
@@ -277,15 +277,15 @@ impl ReportEntry {
         })
     }
 
-    /// Compares; `range` is what its number is inside the intervals of its inputs.
+    /// Compares; `inside` is what its number is inside the intervals of its inputs.
     ///
     /// # Errors
     /// What is wrong with it, at its place.
-    pub fn find(&self, inputs: &Inputs, range: Option<Range>) -> Result<Finding<'_>, Diagnostic> {
-        self.compare(inputs, range).map_err(|found| found.or_at(self.place))
+    pub fn find(&self, inputs: &Inputs, inside: Option<Inside>) -> Result<Finding<'_>, Diagnostic> {
+        self.compare(inputs, inside).map_err(|found| found.or_at(self.place))
     }
 
-    fn compare(&self, inputs: &Inputs, range: Option<Range>) -> Result<Finding<'_>, Diagnostic> {
+    fn compare(&self, inputs: &Inputs, inside: Option<Inside>) -> Result<Finding<'_>, Diagnostic> {
         let unit = self.unit();
         let (computed, total, numbers, failing) = match &self.subject {
             Subject::Cell(_) | Subject::Formula(..) => {
@@ -318,16 +318,16 @@ impl ReportEntry {
         };
         let has_reason = !self.because.is_empty();
         let is_claim = self.published.is_none();
-        let between = range.as_ref().map(Range::ends);
+        let range = inside.as_ref().and_then(Inside::ends);
         let comparison =
-            Comparison { published, computed, range: between, tolerance, expected, has_reason, proof_holds, is_claim };
+            Comparison { published, computed, range, tolerance, expected, has_reason, proof_holds, is_claim };
         let verdict = comparison.judge().map_err(Diagnostic::new)?;
         let found = match (is_claim, total > 1.0) {
             (false, _) => String::new(),
             (true, true) => format!("holds in {computed} of {total}"),
             (true, false) => (if computed > 0.0 { "holds" } else { "does not hold" }).to_owned(),
         };
-        Ok(Finding { entry: self, range, comparison, verdict, found, numbers, proof, failing })
+        Ok(Finding { entry: self, inside, comparison, verdict, found, numbers, proof, failing })
     }
 
     /// Of the published value; none for a claim.

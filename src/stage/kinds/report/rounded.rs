@@ -1,10 +1,11 @@
 //! What the numbers of a report come to inside the intervals of inputs that were printed rounded.
 //!
 //! Every stage that a number comes from is computed anew with one input after the other at both ends of its interval, and
-//! then, for each number, with all of them at those ends that alone made it least, or largest. The least and the largest of all
-//! that was computed are what is told. A number that is continuous takes every value between both somewhere inside, so that a
-//! published value there is reproduced. That none inside reproduces one beyond them holds where the number is monotone in
-//! each input over its interval, whatever the others are. Must not know: verdicts, how a stage computes. Values in the row's unit.
+//! then, for each number, with all of them at their ends: at all corners where they are few, or else at those ends that alone made
+//! it least, or largest. The least and the largest of all that was computed are what is told. A number that is continuous takes
+//! every value between both somewhere inside, so that a published value there is reproduced. Beyond them there is none where the
+//! number is monotone in each input over its interval, and with many inputs whatever the others are. A number that was stated
+//! once, and is used in several places, is one input. Must not know: verdicts, how a stage computes. Values in the row's unit.
 
 use super::entry::ReportEntry;
 use super::verdict::Comparison;
@@ -22,11 +23,20 @@ pub struct Rounded {
     points: Points,
     /// Of the stages that are computed anew, by link.
     names: Vec<String>,
-    /// In SI, by input.
+    /// In SI, by field.
     ends: Vec<[f64; 2]>,
     middles: Vec<f64>,
+    inputs: Vec<Input>,
     /// By entry.
     rows: Vec<Row>,
+}
+
+/// A number that was stated as an interval.
+struct Input {
+    /// The fields that have it: several where the study has it by an alias.
+    fields: Vec<usize>,
+    /// The first of them, as written.
+    path: String,
 }
 
 /// What a number depends on.
@@ -35,6 +45,19 @@ struct Row {
     needs: Vec<bool>,
     /// Those of the inputs that could matter.
     inputs: Vec<usize>,
+    /// A stage that it comes from, which depends on an input and is not computed anew.
+    held: Option<String>,
+}
+
+/// So many inputs of a number are tried at all corners.
+const MOST_AT_ALL: usize = 4;
+
+/// What is to be said of a number whose inputs were printed rounded.
+#[derive(Clone, Debug)]
+pub enum Inside {
+    Range(Range),
+    /// Nothing: this stage depends on them and is not computed anew.
+    Held(String),
 }
 
 /// What a number comes to.
@@ -61,22 +84,40 @@ impl Rounded {
         };
         let demands = varied.stages.iter().map(demand).collect::<Result<_, Diagnostic>>()?;
         let points = Points::new(varied, demands)?;
-        let mut ends = Vec::new();
-        let mut middles = Vec::new();
+        let (mut ends, mut middles) = (Vec::new(), Vec::new());
+        let mut inputs: Vec<Input> = Vec::new();
+        let mut places = Vec::new();
         for axis in &varied.axes {
-            if let Values::Spread(Spread { form: Form::Within(half, _), about, .. }) = axis.values {
-                ends.push([about - half, about + half]);
-                middles.push(about);
+            let Values::Spread(Spread { form: Form::Within(half, _), about, .. }) = axis.values else { continue };
+            match places.iter().position(|place| *place == axis.place) {
+                Some(known) => inputs[known].fields.push(ends.len()),
+                None => {
+                    places.push(axis.place);
+                    inputs.push(Input { fields: vec![ends.len()], path: axis.path.clone() });
+                }
             }
+            ends.push([about - half, about + half]);
+            middles.push(about);
         }
         let row = |entry: &ReportEntry| {
             let named: Vec<bool> = names.iter().map(|name| entry.cells().any(|cell| cell.stage == *name)).collect();
             let links = || named.iter().enumerate().filter(|(_, is_named)| **is_named);
-            let matters = |input: &usize| links().any(|(link, _)| points.depends(link, *input));
-            Row { needs: points.needed(&named), inputs: (0..ends.len()).filter(matters).collect() }
+            let matters = |input: &usize| {
+                inputs[*input].fields.iter().any(|field| links().any(|(link, _)| points.depends(link, *field)))
+            };
+            let held = entry.cells().find(|cell| varied.held.contains(&cell.stage)).map(|cell| cell.stage.clone());
+            let inputs = if held.is_none() { (0..inputs.len()).filter(matters).collect() } else { Vec::new() };
+            Row { needs: points.needed(&named), inputs, held }
         };
         let rows = entries.iter().map(row).collect();
-        Ok(Self { points, names, ends, middles, rows })
+        Ok(Self { points, names, ends, middles, inputs, rows })
+    }
+
+    /// Puts an input at an end of its interval.
+    fn put(&self, point: &mut [f64], input: usize, side: usize) {
+        for &field in &self.inputs[input].fields {
+            point[field] = self.ends[field][side];
+        }
     }
 
     /// What the stages read of the study.
@@ -88,14 +129,15 @@ impl Rounded {
         self.points.uses_seed()
     }
 
-    /// What all of it takes, on one thread \[s\]: each stage at both ends of every interval that it depends on, and at two more
-    /// points for each number that depends on several.
+    /// What all of it takes, on one thread \[s\]: each stage at both ends of every interval that it depends on, and at the corners
+    /// for each number that depends on several.
     pub fn seconds(&self) -> f64 {
         let of_link = |(link, seconds): (usize, f64)| {
-            let alone = (0..self.ends.len()).filter(|input| self.points.depends(link, *input)).count();
-            let together = self.rows.iter().filter(|row| row.needs[link] && row.inputs.len() > 1).count();
+            let depends = |input: &Input| input.fields.iter().any(|field| self.points.depends(link, *field));
+            let alone = self.inputs.iter().filter(|input| depends(input)).count();
+            let together = self.rows.iter().filter(|row| row.needs[link]).map(Row::corners).sum::<usize>();
             // No more corners than the box has.
-            let corners = (2 * together).min(1 << alone.min(20));
+            let corners = together.min(1 << alone.min(20));
             seconds * (2 * alone + if alone > 1 { corners } else { 0 }) as f64
         };
         self.points.seconds_of_each().into_iter().enumerate().map(of_link).sum()
@@ -109,17 +151,17 @@ impl Rounded {
         &self,
         entries: &[ReportEntry],
         (context, inputs): (&Context, &Inputs),
-    ) -> Result<Vec<Option<Range>>, Failure> {
+    ) -> Result<Vec<Option<Inside>>, Failure> {
         let mut memory = Memory::default();
         let as_stated: Vec<Option<f64>> = entries.iter().map(|entry| number(entry, inputs).ok()).collect();
         // One input after the other: two points each.
-        let alone: Vec<Asked> = (0..self.ends.len())
+        let alone: Vec<Asked> = (0..self.inputs.len())
             .flat_map(|input| {
                 let needs = |link: usize| self.rows.iter().any(|row| row.inputs.contains(&input) && row.needs[link]);
                 let needed: Vec<bool> = (0..self.names.len()).map(needs).collect();
-                self.ends[input].map(|end| {
+                [0, 1].map(|side| {
                     let mut point = self.middles.clone();
-                    point[input] = end;
+                    self.put(&mut point, input, side);
                     (point, needed.clone())
                 })
             })
@@ -127,21 +169,24 @@ impl Rounded {
         let found = self.points.each(&alone, &mut memory, (context, inputs))?;
         let mut gathered: Vec<Option<Gathered>> = as_stated.iter().map(|number| number.map(Gathered::new)).collect();
         let mut corners: Vec<Asked> = Vec::new();
-        let mut corners_of: Vec<[Option<usize>; 2]> = Vec::new();
+        let mut corners_of: Vec<Vec<usize>> = Vec::new();
         for (at, (entry, row)) in entries.iter().zip(&self.rows).enumerate() {
-            let mut extreme = [self.middles.clone(), self.middles.clone()];
+            // By which end each input alone makes the number least, and largest.
+            let mut sides = [vec![None; row.inputs.len()], vec![None; row.inputs.len()]];
             if let (Some(own), Some(stated)) = (&mut gathered[at], as_stated[at]) {
-                for &input in &row.inputs {
+                for (place, &input) in row.inputs.iter().enumerate() {
                     let mut of_input = [stated; 2];
-                    for (side, end) in self.ends[input].into_iter().enumerate() {
+                    for (side, end) in ["lower", "upper"].into_iter().enumerate() {
                         let value = self.number_at(entry, row, &found[2 * input + side], inputs);
+                        let path = &self.inputs[input].path;
+                        let value = value.map_err(|why| format!("with `{path}` at its {end} end, {why}"));
                         if let Ok(value) = value {
                             for (which, is_further) in
                                 [value < of_input[0], value > of_input[1]].into_iter().enumerate()
                             {
                                 if is_further {
                                     of_input[which] = value;
-                                    extreme[which][input] = end;
+                                    sides[which][place] = Some(side);
                                 }
                             }
                         }
@@ -149,31 +194,35 @@ impl Rounded {
                     }
                 }
             }
-            corners_of.push(extreme.map(|point| {
+            let wanted = row.wanted(sides);
+            let index = |sides: &Vec<Option<usize>>| {
+                let mut point = self.middles.clone();
+                let moved = row.inputs.iter().zip(sides).filter_map(|(input, side)| Some((*input, (*side)?)));
+                moved.for_each(|(input, side)| self.put(&mut point, input, side));
                 let bits = |point: &[f64]| point.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
-                let moved = bits(&point).iter().zip(bits(&self.middles)).filter(|(one, other)| *one != other).count();
-                // What a single input does is known.
-                if moved < 2 {
-                    return None;
-                }
                 let known = corners.iter().position(|(other, _)| bits(other) == bits(&point));
                 let index = known.unwrap_or_else(|| {
                     corners.push((point, vec![false; self.names.len()]));
                     corners.len() - 1
                 });
                 corners[index].1.iter_mut().zip(&row.needs).for_each(|(asked, needs)| *asked |= needs);
-                Some(index)
-            }));
+                index
+            };
+            corners_of.push(wanted.iter().map(index).collect());
         }
-        // All of them together, where each alone made a number least, or largest.
         let found = self.points.each(&corners, &mut memory, (context, inputs))?;
         for (at, (entry, row)) in entries.iter().zip(&self.rows).enumerate() {
             let Some(own) = &mut gathered[at] else { continue };
-            for corner in corners_of[at].into_iter().flatten() {
-                own.add(self.number_at(entry, row, &found[corner], inputs));
+            for corner in &corners_of[at] {
+                let value = self.number_at(entry, row, &found[*corner], inputs);
+                own.add(value.map_err(|why| format!("with several inputs at their ends, {why}")));
             }
         }
-        Ok(gathered.into_iter().map(|gathered| gathered.and_then(Gathered::range)).collect())
+        let one = |(row, gathered): (&Row, Option<Gathered>)| match &row.held {
+            Some(stage) => Some(Inside::Held(stage.clone())),
+            None => gathered.and_then(Gathered::range).map(Inside::Range),
+        };
+        Ok(self.rows.iter().zip(gathered).map(one).collect())
     }
 
     /// The number of an entry with the tables of a point.
@@ -184,6 +233,28 @@ impl Rounded {
             own.ports.insert(name.clone(), tables.iter().collect());
         }
         number(entry, &own)
+    }
+}
+
+impl Row {
+    /// How many corners are tried.
+    fn corners(&self) -> usize {
+        match self.inputs.len() {
+            0 | 1 => 0,
+            few @ ..=MOST_AT_ALL => 1 << few,
+            _ => 2,
+        }
+    }
+
+    /// The corners, as an end of each input; `sides` are the ends that alone make the number least, and largest.
+    fn wanted(&self, sides: [Vec<Option<usize>>; 2]) -> Vec<Vec<Option<usize>>> {
+        let count = self.inputs.len();
+        if count <= MOST_AT_ALL {
+            let corner = |corner: usize| (0..count).map(|input| Some(corner >> input & 1)).collect();
+            return (0..self.corners()).map(corner).collect();
+        }
+        // What a single input does is known.
+        sides.into_iter().filter(|sides| sides.iter().flatten().count() > 1).collect()
     }
 }
 
@@ -234,14 +305,25 @@ impl Gathered {
     }
 }
 
-impl Range {
+impl Inside {
     /// The least and the largest value.
-    pub fn ends(&self) -> (f64, f64) {
-        (self.least, self.largest)
+    pub fn ends(&self) -> Option<(f64, f64)> {
+        if let Self::Range(range) = self { Some((range.least, range.largest)) } else { None }
     }
 
-    /// Between what it is, and whether some value inside agrees with what is published.
     pub fn said(&self, comparison: &Comparison, unit: &str) -> String {
+        match self {
+            Self::Range(range) => range.said(comparison, unit),
+            Self::Held(stage) => {
+                format!("inputs were printed rounded; `{stage}` is not computed anew for them, so no range is known")
+            }
+        }
+    }
+}
+
+impl Range {
+    /// Between what it is, and whether some value inside agrees with what is published.
+    fn said(&self, comparison: &Comparison, unit: &str) -> String {
         let (least, largest) = (self.least, self.largest);
         // To a hundredth of what is between them.
         let shown = digits(least.abs().max(largest.abs()), (largest - least) / 2000.0).clamp(3, 12);
@@ -250,7 +332,7 @@ impl Range {
         let reached = match (comparison.agrees_as_stated(), comparison.is_reached()) {
             (true, _) => "as stated they reproduce it",
             (false, Some(true)) => "some value inside reproduces it",
-            (false, _) => "none inside reproduces it",
+            (false, _) => "none found inside reproduces it",
         };
         let Self { refused, points, reason, .. } = self;
         let refused = match refused {

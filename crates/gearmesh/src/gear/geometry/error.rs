@@ -174,7 +174,9 @@ pub enum Problem {
         gear: String,
     },
     /// a_w is more than a thousandth of a module below the one without backlash, or not finite.
-    #[error("the centre distance is {found}, but must be at least {minimum} for the teeth to fit into each other")]
+    #[error(
+        "the centre distance is {found}, but must be at least {minimum}, or a thousandth of a module less, for the teeth to fit into each other"
+    )]
     CentreDistance {
         /// a_w \[m\].
         found: Millimetres,
