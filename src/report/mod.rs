@@ -46,6 +46,9 @@ use declare::number::{significant, with_unit};
 use studygraph::store::manifest::{Manifest, StageRecord};
 use studygraph::table::data::{Data, Table};
 
+/// The kind of stage that says what is shown.
+const REPORT: &str = "report";
+
 /// What a run's results look like.
 pub struct Rendered {
     /// One file that needs no other.
@@ -82,6 +85,7 @@ pub enum ReportError {
 /// # Errors
 /// When a report stage's table, or one that a figure draws, is missing or of another shape.
 pub fn render(manifest: &Manifest, tables: Tables<'_>) -> Result<Rendered, ReportError> {
+    let manifest = &manifest.shown(REPORT);
     // Figures of one table follow each other: it is read and checked once.
     let last: RefCell<Option<(String, Arc<Table>)>> = RefCell::default();
     let tables = &|name: &str| {
@@ -91,11 +95,10 @@ pub fn render(manifest: &Manifest, tables: Tables<'_>) -> Result<Rendered, Repor
         }
         last.as_ref().map(|(_, table)| Arc::clone(table))
     };
-    let stages: Vec<&StageRecord> = manifest.stages.iter().filter(|stage| stage.kind == "report").collect();
+    let stages: Vec<&StageRecord> = manifest.stages.iter().filter(|stage| stage.kind == REPORT).collect();
     let order = Order::of(manifest, tables);
     let mut parts = Vec::new();
     for stage in &stages {
-        let finished = matches!(stage.status.as_str(), "hit" | "ran");
         match part(&stage.name, &order, tables) {
             Ok(mut part) => {
                 if stages.len() > 1 {
@@ -106,7 +109,7 @@ pub fn render(manifest: &Manifest, tables: Tables<'_>) -> Result<Rendered, Repor
                 parts.push(part);
             }
             // What is left of an earlier run is shown where it can be; the page says that the stage did not finish.
-            Err(_) if !finished => {}
+            Err(_) if !stage.is_complete() => {}
             Err(error) => return Err(error),
         }
     }

@@ -3,55 +3,56 @@
 //! Found from the tables: one with a key column of words and an integer column `order` says it for that column. Must not
 //! know: figures.
 
-use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::collections::{BTreeMap, HashSet};
 
 use super::figure::Tables;
 use super::spec::Spec;
 use studygraph::store::bundle;
 use studygraph::store::manifest::Manifest;
-use studygraph::table::data::{Data, Table};
+use studygraph::table::data::Data;
 
 /// The values of columns, by the column's name, in their order.
 #[derive(Default)]
 pub struct Order(BTreeMap<String, Vec<String>>);
 
+/// Words, each where it stood first.
+#[derive(Default)]
+struct Words {
+    ordered: Vec<String>,
+    met: HashSet<String>,
+}
+
+impl Words {
+    fn add(&mut self, word: &str) {
+        if self.met.insert(word.to_owned()) {
+            self.ordered.push(word.to_owned());
+        }
+    }
+}
+
 impl Order {
     #[must_use]
     pub fn of(manifest: &Manifest, tables: Tables<'_>) -> Self {
-        let mut found: BTreeMap<String, Vec<String>> = BTreeMap::new();
-        let mut bundles: BTreeMap<&str, Option<Arc<Table>>> = BTreeMap::new();
-        for record in manifest.stages.iter().flat_map(|stage| &stage.tables) {
+        let mut found: BTreeMap<String, Words> = BTreeMap::new();
+        // Of a bundle all rows are had at once.
+        for (group, record) in bundle::published(manifest) {
             let mut keys = record.columns.iter().filter(|column| column.key);
             let (Some(key), None) = (keys.next(), keys.next()) else { continue };
             if key.kind != "text" || !record.columns.iter().any(|column| column.name == "order") {
                 continue;
             }
-            // Of a bundle all rows are had at once.
-            let all = bundles.entry(&record.file).or_insert_with(|| {
-                let name = record.file.strip_suffix(".parquet").filter(|_| bundle::is_bundle(&record.file));
-                name.and_then(tables)
-            });
-            let own = if all.is_none() { tables(&record.name) } else { None };
-            let Some(table) = all.as_ref().or(own.as_ref()) else { continue };
-            let rows = match &*all {
-                Some(all) => bundle::rows_of(all, record.stage()).unwrap_or_default(),
-                None => 0..table.rows(),
-            };
+            let Some(table) = tables(&format!("{group}.{}", record.table())) else { continue };
             let (Some(Data::Text(words)), Some(Data::Integer(places))) =
                 (table.column(&key.name), table.column("order"))
             else {
                 continue;
             };
-            let mut rows: Vec<usize> = rows.collect();
+            let mut rows: Vec<usize> = (0..table.rows()).collect();
             rows.sort_by_key(|&row| places[row]);
             let known = found.entry(key.name.clone()).or_default();
-            for row in rows {
-                if !known.contains(&words[row]) {
-                    known.push(words[row].clone());
-                }
-            }
+            rows.into_iter().for_each(|row| known.add(&words[row]));
         }
+        let found = found.into_iter().map(|(column, words)| (column, words.ordered)).collect();
         Self(found)
     }
 

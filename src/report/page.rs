@@ -2,7 +2,6 @@
 //!
 //! Must not know: how a figure is drawn. Everything that differs from run to run stands behind the template's last mark.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use minijinja::Environment;
@@ -19,15 +18,11 @@ use super::sheet::{self, Sheet};
 use super::sweep::{self, Sweep};
 use super::warnings::{self, Warned};
 use super::{ReportError, flags, integers, plot, seconds, texts, verdict};
-use studygraph::store::bundle;
 use studygraph::store::manifest::{Manifest, OmissionRecord, StageRecord};
 use studygraph::table::data::Table;
 
 /// What is not computed is named where it would have taken this share of the run.
 const WORTH_NAMING: f64 = 0.01;
-
-/// Stages of a kind shown on the page where there are more than their tables have files for.
-const SHOWN_STAGES: usize = 8;
 
 /// What, why, and about how much it would have taken.
 type Said = (String, String, String);
@@ -166,25 +161,24 @@ pub fn html(
     let counts = counts(parts)?;
     let total: i64 = counts.iter().map(|count| count.entries).sum();
     let attention: i64 = counts.iter().filter(|count| count.needs_attention).map(|count| count.entries).sum();
-    let (shown, more) = shown_stages(manifest);
-    let remarks = |stages: &[&StageRecord], pick: &dyn Fn(&StageRecord) -> Vec<Said>| -> Vec<Remark> {
+    let remarks = |stages: &[StageRecord], pick: &dyn Fn(&StageRecord) -> Vec<Said>| -> Vec<Remark> {
         let of = |stage: &StageRecord| {
             let name = stage.name.clone();
             pick(stage).into_iter().map(move |(what, why, saved)| Remark { stage: name.clone(), what, why, saved })
         };
-        stages.iter().copied().flat_map(of).collect()
+        stages.iter().flat_map(of).collect()
     };
     let least = WORTH_NAMING * manifest.seconds;
     let is_worth = |left: &&OmissionRecord| left.saved_seconds.is_some_and(|saved| saved >= least);
-    let left_out = remarks(&shown, &|stage| {
+    let left_out = remarks(&manifest.stages, &|stage| {
         let said = |left: &OmissionRecord| {
             (left.what.clone(), left.why.clone(), left.saved_seconds.map_or_else(String::new, seconds))
         };
         stage.left_out.iter().filter(is_worth).map(said).collect()
     });
-    let failures: Vec<&StageRecord> =
-        manifest.stages.iter().filter(|stage| matches!(stage.status.as_str(), "failed" | "skipped")).collect();
-    let stages: Vec<StageView> = shown.iter().copied().map(stage_view).collect();
+    let failures: Vec<&StageRecord> = manifest.stages.iter().filter(|stage| !stage.is_complete()).collect();
+    let stages: Vec<StageView> = manifest.stages.iter().map(stage_view).collect();
+    let more = manifest.more.stages.iter().map(|(kind, &stages)| More { kind: kind.clone(), stages });
     let inputs = Inputs::of(manifest);
     let mut comparisons: Vec<&comparison::Row> = parts.iter().flat_map(|part| &part.comparisons).collect();
     comparisons.sort_by_key(|row| row.rank());
@@ -215,14 +209,14 @@ pub fn html(
         choices: choice::choices(manifest, tables)?,
         sweeps: sweep::sweeps(manifest, tables)?,
         sheets: sheet::sheets(manifest, tables),
-        omissions: manifest.stages.iter().map(|stage| stage.left_out.len()).sum(),
+        omissions: manifest.stages.iter().map(|stage| stage.left_out.len()).sum::<usize>() + manifest.more.omissions,
         left_out,
         warnings: warnings::warned(
             manifest.stages.iter().map(|stage| (stage.name.as_str(), stage.warnings.as_slice())),
         ),
         failures,
         stages,
-        more,
+        more: more.collect(),
         tables: records.stages,
         packed: records.packed,
         seconds: seconds(manifest.seconds),
@@ -288,22 +282,6 @@ fn figure_view(figure: &Figure) -> FigureView {
         file: format!("{folder}/{}", figure.name),
         varies: figure.varies,
     }
-}
-
-/// The stages that the page shows; of a kind with very many the first ones and how many more there are.
-fn shown_stages(manifest: &Manifest) -> (Vec<&StageRecord>, Vec<More>) {
-    let mut counts: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
-    manifest.stages.iter().for_each(|stage| counts.entry(&stage.kind).or_default().0 += 1);
-    let mut shown = Vec::new();
-    for stage in &manifest.stages {
-        let Some((all, met)) = counts.get_mut(stage.kind.as_str()) else { continue };
-        if *all <= bundle::MANY || *met < SHOWN_STAGES {
-            *met += 1;
-            shown.push(stage);
-        }
-    }
-    let more = counts.into_iter().filter(|(_, (all, met))| all > met);
-    (shown, more.map(|(kind, (all, met))| More { kind: kind.to_owned(), stages: all - met }).collect())
 }
 
 fn stage_view(record: &StageRecord) -> StageView<'_> {

@@ -28,6 +28,7 @@ mod properties;
 mod python;
 mod query;
 mod rating;
+mod recall;
 mod reference;
 mod registry;
 mod reliability;

@@ -12,9 +12,11 @@ use std::time::{Duration, SystemTime};
 use super::cache::TINY;
 use super::disk::{self, Place};
 use super::faults::{Before, earlier, thorough, undisturbed};
+use super::kills;
 use super::published::{Published, differences, essence, published};
 use declare::digest::Digest;
 use studygraph::store::cache::{Cache, Lookup};
+use studygraph::store::manifest::Manifest;
 use studygraph::store::results::{Folder, is_drawn};
 
 /// One thing that a run did to the disk.
@@ -267,34 +269,38 @@ fn lay_out(state: &BTreeMap<String, Vec<u8>>, disk: &Path) {
 /// The tables of every entry of a cache.
 type Tables = BTreeMap<(Digest, String), Vec<u8>>;
 
-fn tables(cache: &Cache, disk: &Path) -> Tables {
-    let mut tables = Tables::new();
+/// Those of entries with files of their own, and those that packs may have under these keys.
+fn tables(cache: &Cache, disk: &Path, packed: &[Digest]) -> Tables {
+    let mut keys: BTreeSet<Digest> = packed.iter().copied().collect();
     let folders = fs::read_dir(disk.join("cache/entries")).into_iter().flatten();
     for folder in folders.map(|folder| folder.unwrap().path()) {
         for entry in fs::read_dir(&folder).into_iter().flatten().map(|entry| entry.unwrap().path()) {
             let part = |path: &Path| path.file_name().unwrap().to_string_lossy().into_owned();
-            let Some(key) = Digest::from_hex(&(part(&folder) + &part(&entry))) else { continue };
-            let Lookup::Found(entry) = cache.look_up(key) else { continue };
-            for table in &entry.tables {
-                if let Ok(bytes) = cache.bytes(key, &table.name) {
-                    tables.insert((key, table.name.clone()), bytes);
-                }
+            keys.extend(Digest::from_hex(&(part(&folder) + &part(&entry))));
+        }
+    }
+    let mut tables = Tables::new();
+    for key in keys {
+        let Lookup::Found(entry) = cache.look_up(key) else { continue };
+        for table in &entry.tables {
+            if let Ok(bytes) = cache.bytes(key, &table.name) {
+                tables.insert((key, table.name.clone()), bytes);
             }
         }
     }
     tables
 }
 
+fn keys(manifest: &Manifest) -> impl Iterator<Item = Digest> {
+    manifest.stages.iter().flat_map(|stage| &stage.keys).map(|record| record.key)
+}
+
 /// What the program takes for good in a state must be good.
-fn accepted(
-    place: &Place,
-    whole: &Tables,
-    expected: &Published,
-    manifest: &studygraph::store::manifest::Manifest,
-) -> Vec<String> {
+fn accepted(place: &Place, whole: &Tables, expected: &Published, manifest: &Manifest) -> Vec<String> {
     let mut wrong = Vec::new();
     let cache = Cache::open_if_possible(&place.disk.join("cache"));
-    for (key, bytes) in tables(&cache, &place.disk) {
+    let packed: Vec<Digest> = whole.keys().map(|(key, _)| *key).collect();
+    for (key, bytes) in tables(&cache, &place.disk, &packed) {
         if whole.get(&key) != Some(&bytes) {
             wrong.push(format!("the cache gives a wrong table {}", key.1));
         }
@@ -333,9 +339,11 @@ fn cut_anywhere(first: Option<&str>, study: &str, seed: u64) {
     trace.record(&fs::read(log).unwrap());
     let expected = undisturbed(study);
     assert_eq!(differences(&expected, &published(&place.results())), Vec::<String>::new());
-    let whole = tables(&Cache::open_if_possible(&place.disk.join("cache")), &place.disk);
-    assert!(whole.len() > 3 && trace.steps.len() > 20, "{} tables, {} steps", whole.len(), trace.steps.len());
     let manifest = Folder::new(&place.disk.join("results"), "tiny").manifest().unwrap();
+    let earlier = Folder::new(&before.folder.path().join("disk/results"), "tiny").manifest();
+    let packed: Vec<Digest> = [&manifest].into_iter().chain(&earlier).flat_map(keys).collect();
+    let whole = tables(&Cache::open_if_possible(&place.disk.join("cache")), &place.disk, &packed);
+    assert!(whole.len() > 3 && trace.steps.len() > 20, "{} tables, {} steps", whole.len(), trace.steps.len());
     // Nothing lost, nothing wrong: the record is that of the run.
     let mut chance = Chance(seed);
     let mut wrong = Vec::new();
@@ -370,6 +378,17 @@ fn a_power_cut_during_a_first_run() {
 #[test]
 fn a_power_cut_while_results_change() {
     cut_anywhere(Some(&earlier()), TINY, 2);
+}
+
+/// More small entries than have files of their own: the others are in packs, and their tables in bundles.
+#[test]
+fn a_power_cut_while_packs_are_written() {
+    let packs = |place: &Path| fs::read_dir(place.join("disk/cache/packs")).map_or(0, Iterator::count);
+    let (few, many) = (kills::study(44), kills::study(90));
+    cut_anywhere(None, &many, 300, 4);
+    cut_anywhere(Some(&few), &many, 300, 5);
+    let before = Before::of(&[&few, &many]);
+    assert_eq!(packs(before.folder.path()), 2, "each run has its pack");
 }
 
 /// The record is what was done: when nothing is lost, the disk is as the run left it.

@@ -344,7 +344,7 @@ impl Task<'_> {
         tables.sort_by_key(|table| table.curves.is_some());
         let mut why = why::reasons((&self.old.1, old), (&self.new.1, new));
         let mut state = Difference::of_parts(tables.iter().map(|table| table.state));
-        if why::complete(old) && !why::complete(new) {
+        if old.is_complete() && !new.is_complete() {
             state = Difference::Changed;
         }
         if state.differs() && why.is_empty() {

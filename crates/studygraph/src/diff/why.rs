@@ -17,7 +17,7 @@ pub fn reasons(before: (&Manifest, &StageRecord), after: (&Manifest, &StageRecor
     let ((old_run, old), (new_run, new)) = (before, after);
     let mut why = Vec::new();
     for (stage, is_new) in [(old, false), (new, true)] {
-        if !complete(stage) && (is_new || complete(new)) {
+        if !stage.is_complete() && (is_new || new.is_complete()) {
             let text = Some(format!("{}: {}", stage.status, stage.why));
             let (before, after) = if is_new { (None, text) } else { (text, None) };
             why.push(Reason { part: ChangedPart::Status, what: String::new(), from: Vec::new(), before, after });
@@ -109,11 +109,6 @@ pub fn unknown(before: &Manifest, after: &Manifest) -> Reason {
     let (before, after) = (facts(before), facts(after));
     let (before, after) = if before == after { (None, None) } else { (Some(before), Some(after)) };
     Reason { part: ChangedPart::Unknown, what, from: Vec::new(), before, after }
-}
-
-#[must_use]
-pub fn complete(stage: &StageRecord) -> bool {
-    matches!(stage.status.as_str(), "hit" | "ran")
 }
 
 fn program(program: &Program) -> String {

@@ -9,6 +9,7 @@
 //! A plan is a board on which everything that can be known without computing is known; a run goes on from there. Must
 //! not know: threads, how a stage is computed.
 
+use std::cell::LazyCell;
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
@@ -296,15 +297,18 @@ impl<'a> Board<'a> {
 
     /// What a stage was last computed from.
     #[must_use]
-    pub fn last(&self, node: usize) -> Option<&JournalStage> {
-        self.last.get(&self.study.nodes[node].name).map(|&index| &self.journal.stages[index])
+    pub fn last(&self, node: usize) -> Option<JournalStage> {
+        self.journal.stage(*self.last.get(&self.study.nodes[node].name)?)
     }
 
     /// Takes a ready stage to Hit, or to Queued (then true).
     fn look_up(&mut self, node: usize) -> bool {
         let name = &self.study.nodes[node].name;
-        let none = JournalStage::default();
-        let last = self.last.get(name).map_or(&none, |&index| &self.journal.stages[index]);
+        // Asked only where something is to be computed.
+        let last = LazyCell::new(|| {
+            let place = self.last.get(name).copied();
+            place.and_then(|place| self.journal.stage(place)).unwrap_or_default()
+        });
         let forced = self.options.force.applies(name);
         let parts = Arc::clone(&self.nodes[node].parts);
         let mut reasons: Vec<Why> = Vec::new();
@@ -401,25 +405,31 @@ impl<'a> Board<'a> {
     /// The journal after this run: stages without news keep what they had.
     #[must_use]
     pub fn next_journal(&self) -> Journal {
-        let stages = self.study.nodes.iter().zip(&self.nodes).filter_map(|(node, progress)| {
-            let last = || self.last.get(&node.name).map(|&index| self.journal.stages[index].clone());
-            let keys = || progress.parts.iter().map(|part| part.record.clone());
-            match progress.state {
-                StageState::Hit | StageState::Done => Some(JournalStage {
-                    name: node.name.clone(),
+        let mut journal = Journal::default();
+        for stage in self.study.stages() {
+            let (name, state) = match stage {
+                Ok(node) => (&self.study.nodes[node].name, self.nodes[node].state),
+                Err(unread) => (&unread.name, StageState::Want),
+            };
+            let last = self.last.get(name).copied();
+            let keys = || stage.iter().flat_map(|&node| self.nodes[node].parts.iter()).map(|part| part.record.clone());
+            match (state, last) {
+                (StageState::Hit | StageState::Done, _) => journal.add(&JournalStage {
+                    name: name.clone(),
                     keys: keys().collect(),
-                    whole: progress.whole,
+                    whole: stage.ok().and_then(|node| self.nodes[node].whole),
                     failed: Vec::new(),
                 }),
-                StageState::Failed => Some(JournalStage {
-                    name: node.name.clone(),
+                (StageState::Failed, last) => journal.add(&JournalStage {
+                    name: name.clone(),
                     failed: keys().map(|record| Failed(record.key)).collect(),
-                    ..last().unwrap_or_default()
+                    ..last.and_then(|last| self.journal.stage(last)).unwrap_or_default()
                 }),
-                _ => last(),
+                (_, Some(last)) => journal.add_from(&self.journal, last),
+                (_, None) => {}
             }
-        });
-        Journal { stages: stages.collect() }
+        }
+        journal
     }
 }
 

@@ -15,16 +15,18 @@ use rayon::{ScopeFifo, ThreadPoolBuilder};
 use super::board::{Board, StageState, Step};
 use super::events::{Event, Observer, Silent};
 use super::fault::Fault;
+use super::graph::Graph;
 use super::note;
 use super::options::Options;
 use super::outcome::Outcome;
 use super::plan;
+use super::recall::{Part, Recalled};
 use super::work::{Ended, Run, message};
 use crate::store::cache::Cache;
 use crate::store::entry::StoredTable;
 use crate::store::error::StoreError;
 use crate::store::facts::Facts;
-use crate::store::results::{Draw, Folder, Published, Source};
+use crate::store::results::{self, Draw, Folder, Published, Source};
 use crate::study::Study;
 use crate::table::data::Table;
 use declare::error::Diagnostic;
@@ -43,6 +45,17 @@ pub enum RunError {
     Threads { threads: usize, problem: String },
 }
 
+/// Where a run keeps and publishes, and who hears of it.
+#[derive(Clone, Copy)]
+pub struct Surroundings<'a> {
+    pub cache: &'a Cache,
+    pub observer: &'a dyn Observer,
+    pub stop: &'a AtomicBool,
+    pub folder: &'a Folder,
+    /// Draws the report.
+    pub draw: Option<Draw<'a>>,
+}
+
 /// Runs a study and brings its results folder up to date; `draw` draws the report.
 ///
 /// # Errors
@@ -56,53 +69,98 @@ pub fn run(
     folder: &Folder,
     draw: Option<Draw<'_>>,
 ) -> Result<(Outcome, Published), RunError> {
-    let facts =
-        || Facts::collect(&study.program.about, study.path.parent().unwrap_or(Path::new("")), options.threads());
+    let around = Surroundings { cache, observer, stop, folder, draw };
     let publish = |outcome: &Outcome| {
-        // What a run that was stopped had finished is published; only whoever asks meanwhile gets less.
-        let go_on = |file: &str| {
-            let is_late = !outcome.stopped && stop.load(Ordering::Relaxed);
-            if is_late { Err(StoreError::Stopped { path: file.to_owned() }) } else { Ok(()) }
-        };
-        let next = |file: &str| {
-            observer.event(&Event::Publishing { file });
-            go_on(file)
-        };
-        let bytes = |stage: &str, table: &str| outcome.bytes(cache, stage, table);
-        let table = |stage: &str, table: &str| outcome.table(cache, stage, table);
-        let pieces = |stage: &str, table: &str| {
-            let file = format!("{stage}.{table}.parquet");
-            let found = outcome.pieces(cache, stage, table)?;
-            let found = found.map(move |piece| go_on(&file).and(piece));
-            Some(Box::new(found) as Box<dyn Iterator<Item = Result<Table, StoreError>>>)
-        };
-        folder.publish(
-            outcome.manifest(study),
-            facts,
-            Source {
-                bytes: &bytes,
-                pieces: Some(&pieces),
-                table: Some(&table),
-                draw,
-                next: &next,
-                waits: &go_on,
-                code: study.program.about.code,
-            },
-        )
+        publishing(study, outcome, options, around, |facts, source| {
+            folder.publish(outcome.manifest(study), facts, source)
+        })
     };
-    let mut outcome = execute(study, cache, options, observer, stop)?;
+    let (mut outcome, mut graph) = executed(study, options, around)?;
     let mut published = publish(&outcome);
     if let Err(StoreError::Damaged { .. }) = published {
         // Plans look at headers only; a table that is found damaged now is forgotten, and computed again.
-        outcome = execute(study, cache, options, observer, stop)?;
+        (outcome, graph) = executed(study, options, around)?;
         published = publish(&outcome);
     }
     for message in &warnings(cache, &outcome) {
         observer.event(&Event::Warning { message });
     }
     let published = published?;
-    note::keep(study, cache, options, folder, &outcome, &published);
+    let recalled = || Recalled::of(study, &graph);
+    note::keep(study, (cache, options, folder), (&outcome, &published), recalled, None);
     Ok((outcome, published))
+}
+
+/// The same for a study of which only some stages were read, with the options that it was chosen for; none where all of it
+/// must be read after all.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_part(
+    part: &Part,
+    options: &Options,
+    around: Surroundings<'_>,
+) -> Result<Option<(Outcome, Published)>, RunError> {
+    let Surroundings { cache, observer, folder, .. } = around;
+    let (outcome, graph) = executed(&part.study, &part.options, around)?;
+    let of_part = results::Part {
+        manifest: outcome.manifest(&part.study),
+        stages: part.stages(),
+        reader: part.study.program.pictures.reader,
+        is_as_before: &|| part.note.holds_in(folder.path()),
+    };
+    let published =
+        publishing(&part.study, &outcome, options, around, |facts, source| folder.publish_part(of_part, facts, source));
+    // What else there is to be said a run of all stages says, and makes good.
+    if let Err(StoreError::Damaged { .. } | StoreError::Format { .. }) | Ok(None) = published {
+        return Ok(None);
+    }
+    for message in &warnings(cache, &outcome) {
+        observer.event(&Event::Warning { message });
+    }
+    let Some(published) = published? else { return Ok(None) };
+    let recalled = || part.recalled(&graph);
+    note::keep(&part.study, (cache, options, folder), (&outcome, &published), recalled, Some(&part.note));
+    Ok(Some((outcome, published)))
+}
+
+/// Publishes by `publish`, which is given what the run has to say, and where tables come from.
+fn publishing<T>(
+    study: &Study,
+    outcome: &Outcome,
+    options: &Options,
+    Surroundings { cache, observer, stop, draw, .. }: Surroundings<'_>,
+    publish: impl FnOnce(&dyn Fn() -> Facts, Source<'_>) -> Result<T, StoreError>,
+) -> Result<T, StoreError> {
+    let facts =
+        || Facts::collect(&study.program.about, study.path.parent().unwrap_or(Path::new("")), options.threads());
+    // What a run that was stopped had finished is published; only whoever asks meanwhile gets less.
+    let go_on = |file: &str| {
+        let is_late = !outcome.stopped && stop.load(Ordering::Relaxed);
+        if is_late { Err(StoreError::Stopped { path: file.to_owned() }) } else { Ok(()) }
+    };
+    let next = |file: &str| {
+        observer.event(&Event::Publishing { file });
+        go_on(file)
+    };
+    let bytes = |stage: &str, table: &str| outcome.bytes(cache, stage, table);
+    let table = |stage: &str, table: &str| outcome.table(cache, stage, table);
+    let pieces = |stage: &str, table: &str| {
+        let file = format!("{stage}.{table}.parquet");
+        let found = outcome.pieces(cache, stage, table)?;
+        let found = found.map(move |piece| go_on(&file).and(piece));
+        Some(Box::new(found) as Box<dyn Iterator<Item = Result<Table, StoreError>>>)
+    };
+    let source = Source {
+        bytes: &bytes,
+        pieces: Some(&pieces),
+        table: Some(&table),
+        draw,
+        next: &next,
+        waits: &go_on,
+        code: study.program.about.code,
+    };
+    publish(&facts, source)
 }
 
 /// What the next run will miss.
@@ -134,6 +192,17 @@ pub fn execute(
     observer: &dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
+    let nowhere = Folder::new(Path::new(""), "");
+    let around = Surroundings { cache, observer, stop, folder: &nowhere, draw: None };
+    Ok(executed(study, options, around)?.0)
+}
+
+/// What came of a run, and its graph.
+fn executed(
+    study: &Study,
+    options: &Options,
+    Surroundings { cache, observer, stop, .. }: Surroundings<'_>,
+) -> Result<(Outcome, Graph), RunError> {
     let began = Instant::now();
     let mut board = Board::new(study, cache, options, &Silent)?;
     let queued = board.settle();
@@ -169,7 +238,8 @@ pub fn execute(
         cache.put_journal(&study.name, &journal);
     }
     let stopped = stop.load(Ordering::Relaxed) && board.nodes.iter().any(|progress| progress.given_up);
-    Ok(Outcome::of(&board, stopped, began.elapsed().as_secs_f64()))
+    let outcome = Outcome::of(&board, stopped, began.elapsed().as_secs_f64());
+    Ok((outcome, board.graph))
 }
 
 impl Run<'_> {

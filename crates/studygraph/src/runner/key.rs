@@ -176,24 +176,30 @@ impl Parts<'_> {
             fields.push(((*field).to_owned(), Short::from(&shared)));
         }
         config.count(fields.len());
-        let mut demand = Writer::new("gearstudy 1 demand");
-        demand.count(self.demand.tables.len());
-        for (table, columns) in &self.demand.tables {
-            demand.text(table).count(columns.len());
-            for column in columns {
-                demand.text(column);
-            }
-        }
         let seed = self.seed.map(|seed| seed.digest());
         Common {
             code: self.code,
             config: config.finish(),
             fields: fields.into(),
             seed,
-            demand: demand.finish(),
+            demand: demand(self.demand),
             inputs: &self.inputs,
         }
     }
+}
+
+/// The digest of what is asked of a stage.
+#[must_use]
+pub fn demand(demand: &Demand) -> Digest {
+    let mut writer = Writer::new("gearstudy 1 demand");
+    writer.count(demand.tables.len());
+    for (table, columns) in &demand.tables {
+        writer.text(table).count(columns.len());
+        for column in columns {
+            writer.text(column);
+        }
+    }
+    writer.finish()
 }
 
 /// Digests that all chunks of a stage have in common.

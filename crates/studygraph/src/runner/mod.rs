@@ -18,6 +18,7 @@ pub mod outcome;
 mod pieces;
 pub mod plan;
 pub mod reach;
+pub mod recall;
 pub mod refuse;
 pub mod rehearse;
 pub mod shard;

@@ -348,7 +348,7 @@ impl Cache {
         let parsed = match file::read(&path, file::MOST_MANIFEST) {
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(Journal::default()),
             Err(error) => Err(error.to_string()),
-            Ok(bytes) => serde_json::from_slice(&bytes).map_err(|error| error.to_string()),
+            Ok(bytes) => Journal::parse(bytes).map_err(|error| error.to_string()),
         };
         parsed.unwrap_or_else(|problem| {
             self.unkept().journal.get_or_insert_with(|| format!("cannot read `{}`: {problem}", path.display()));
@@ -377,10 +377,7 @@ impl Cache {
             return;
         }
         let path = self.journal_path(study);
-        let written = serde_json::to_vec(journal)
-            .map_err(|error| StoreError::Format { table: study.to_owned(), problem: error.to_string() })
-            .and_then(|bytes| replace(&path, &bytes, Durability::Lazy));
-        if let Err(error) = written {
+        if let Err(error) = replace(&path, &journal.bytes(), Durability::Lazy) {
             self.unkept().journal = Some(error.to_string());
         }
     }

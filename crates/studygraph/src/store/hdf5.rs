@@ -18,6 +18,7 @@ use hdf5_metno::types::VarLenUnicode;
 use hdf5_metno::{Dataset, File, FileBuilder, Group, H5Type, Location};
 
 use super::error::StoreError;
+use super::file;
 use super::manifest::TableRecord;
 use super::parquet::flags;
 use crate::table::data::{Data, Table};
@@ -92,6 +93,46 @@ impl Writer {
 /// A sentence, when the file is not one of ours.
 pub fn read(path: &Path, stage: &str, table: &str) -> Result<Table, String> {
     read_table(path, stage, table).map_err(|error| error.to_string())?
+}
+
+/// The bytes of a file with other numbers in some tables, given by group and name, as they were and as they are; none where more
+/// than numbers changed, or where the file does not have what was. Each column of numbers lies in one piece.
+pub fn patched<'t>(
+    path: &Path,
+    tables: impl Iterator<Item = ((String, String), &'t Table, &'t Table)>,
+) -> Option<Vec<u8>> {
+    let mut bytes = file::read(path, file::MOST_TABLE).ok()?;
+    let opened = unlocked().open(path).ok()?;
+    for ((group, name), old, new) in tables {
+        if old.rows() != new.rows() || old.schema() != new.schema() {
+            return None;
+        }
+        let group = opened.group(&group).and_then(|group| group.group(&name)).ok()?;
+        for ((column, old), new) in new.schema().columns.iter().zip(old.columns()).zip(new.columns()) {
+            let (Some(was), Some(is)) = (number_bytes(old), number_bytes(new)) else {
+                if old == new {
+                    continue;
+                }
+                return None;
+            };
+            if was != is {
+                let at = usize::try_from(group.dataset(&column.name).ok()?.offset()?).ok()?;
+                let there = bytes.get_mut(at..at + was.len()).filter(|there| **there == *was)?;
+                there.copy_from_slice(&is);
+            }
+        }
+    }
+    Some(bytes)
+}
+
+/// Numbers as they lie in a file; none of words.
+fn number_bytes(data: &Data) -> Option<Vec<u8>> {
+    match data {
+        Data::Float(values) => Some(values.iter().flat_map(|value| value.to_ne_bytes()).collect()),
+        Data::Integer(values) => Some(values.iter().flat_map(|value| value.to_ne_bytes()).collect()),
+        Data::Flag(values) => Some(values.iter().map(|value| u8::from(*value)).collect()),
+        Data::Text(_) => None,
+    }
 }
 
 /// Without libhdf5's own lock (1.10.7 or later): no file is written in place, and the lock fails on some network disks.

@@ -3,7 +3,9 @@
 //! Must not know: how any of it was computed. Field names are read by other programs: additions only, or another format.
 
 mod config;
+mod cut;
 mod lines;
+mod shown;
 mod wire;
 
 use std::borrow::Cow;
@@ -13,6 +15,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 pub use config::Config;
+pub use cut::Cut;
+pub use shown::{More, places as shown_places};
 
 use super::entry::{StoredColumn, StoredTable};
 pub use super::key_record::{KeyRecord, Short};
@@ -58,6 +62,8 @@ pub struct Manifest {
     pub tolerances: Vec<(String, String)>,
     /// Every file beside the manifest that belongs to it, so that a later run can tell what is missing or stale.
     pub files: Vec<FileRecord>,
+    /// Of one that has not all stages, what else there is; never written.
+    pub more: More,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq, Eq)]

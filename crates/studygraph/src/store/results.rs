@@ -12,6 +12,7 @@ mod known;
 mod pieces;
 mod publish;
 mod remove;
+mod splice;
 #[cfg(test)]
 mod tests;
 
@@ -23,6 +24,7 @@ pub use known::{FileState, Known};
 #[cfg(feature = "hdf5")]
 pub use publish::hdf5_bytes;
 pub use publish::{Bytes, Draw, Drawn, Pieces, Published, Source, Tables};
+pub use splice::Part;
 
 use super::bundle::{Opened, is_bundle};
 use super::error::StoreError;
@@ -225,8 +227,4 @@ pub fn held_text(table: &Table, file: &str) -> Option<String> {
 /// `stage.table`; stages have no dot in their name.
 fn split(name: &str) -> (&str, &str) {
     name.split_once('.').unwrap_or((name, ""))
-}
-
-fn complete(stage: &super::manifest::StageRecord) -> bool {
-    matches!(stage.status.as_str(), "hit" | "ran")
 }

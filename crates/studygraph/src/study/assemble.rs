@@ -5,13 +5,14 @@
 use std::path::Path;
 
 use super::blame::Blame;
+use super::blocks::Blocks;
 use super::decode::Decoder;
 use super::document::{Content, KeyValue, Node as Tree, parse};
 use super::links::Draft;
 use super::overrides::Stages;
 use super::path::FieldPath;
 use super::words::{alternatives, quote};
-use super::{Changes, Node, Source, Study, cells, files, intervals, links, settings};
+use super::{Changes, Node, Source, Study, Unread, cells, files, intervals, links, settings};
 use crate::program::Program;
 use crate::stage::Kind;
 use crate::table::tolerance::Allowance;
@@ -65,7 +66,37 @@ pub fn examine(text: &str, path: &Path, program: &'static Program) -> (Option<St
     (sound, wrong)
 }
 
+/// A study of some of the stages of a text; the others are told by name and kind. None where anything is wrong, or where a
+/// file would have to be read.
+pub fn part(
+    blocks: &Blocks,
+    stages: &[usize],
+    unread: Vec<Unread>,
+    path: &Path,
+    program: &'static Program,
+) -> Option<Study> {
+    let (text, shifts) = blocks.of(stages);
+    let mut root = parse(&text).ok()??;
+    root.shift(&shifts);
+    if !files::named(&root).is_empty() {
+        return None;
+    }
+    let mut wrong = Vec::new();
+    let study = sound_tree(Some(root), blocks.text(), path, program, &mut wrong).ok()??;
+    wrong.is_empty().then_some(Study { unread, ..study })
+}
+
 fn sound(
+    text: &str,
+    path: &Path,
+    program: &'static Program,
+    wrong: &mut Vec<Diagnostic>,
+) -> Result<Option<Study>, Diagnostic> {
+    sound_tree(parse(text)?, text, path, program, wrong)
+}
+
+fn sound_tree(
+    root: Option<Tree>,
     text: &str,
     path: &Path,
     program: &'static Program,
@@ -74,7 +105,7 @@ fn sound(
     let start = Place { line: 1, column: 1, ..Place::default() };
     let help = "a study starts with `study: NAME` and `stages:`";
     let empty = || Diagnostic::new("the file is empty").at(start).help(help);
-    let root = parse(text)?.filter(|root| !root.is_null()).ok_or_else(empty)?;
+    let root = root.filter(|root| !root.is_null()).ok_or_else(empty)?;
     let root = files::expanded(with_what_is_set(root, program.kinds)?, text)?;
     let Content::Mapping(pairs) = &root.content else {
         let message = format!("a study is a mapping that starts with `study: NAME`, not {}", root.describe());
@@ -129,6 +160,7 @@ fn sound(
         changes: Changes::default(),
         name: keys.text("study").to_owned(),
         nodes,
+        unread: Vec::new(),
         program,
     }))
 }

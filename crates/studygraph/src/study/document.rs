@@ -20,7 +20,7 @@ use declare::text::unfit;
 /// Levels of nesting, aliases included.
 const DEEPEST: usize = 64;
 /// Scalars, lists and mappings, copies made by anchors and aliases included.
-const MOST_NODES: usize = 100_000;
+pub const MOST_NODES: usize = 100_000;
 
 /// One value of the text.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,6 +87,39 @@ impl Node {
             }
         }
         self
+    }
+}
+
+/// How far a piece of a text lies behind its place in another one.
+#[derive(Clone, Copy, Debug)]
+pub struct Shift {
+    /// Where it begins.
+    pub from: usize,
+    pub bytes: usize,
+    pub lines: usize,
+}
+
+impl Node {
+    /// Moves what was read of a text to where its pieces lie in the whole.
+    pub fn shift(&mut self, shifts: &[Shift]) {
+        let moved = |place: &mut Place| {
+            let piece = shifts.partition_point(|shift| shift.from <= place.offset);
+            if let Some(Shift { bytes, lines, .. }) = piece.checked_sub(1).map(|piece| shifts[piece]) {
+                place.offset += bytes;
+                place.line += lines;
+            }
+        };
+        moved(&mut self.place);
+        match &mut self.content {
+            Content::Scalar { .. } => {}
+            Content::Sequence(items) => items.iter_mut().for_each(|item| item.shift(shifts)),
+            Content::Mapping(pairs) => {
+                for pair in pairs {
+                    moved(&mut pair.place);
+                    pair.node.shift(shifts);
+                }
+            }
+        }
     }
 }
 

@@ -222,9 +222,9 @@ fn journals(root: &Path) -> Result<BTreeMap<Digest, SystemTime>, StoreError> {
     for (path, _) in list(&root.join("journals"))? {
         // What is not a journal names nothing.
         let bytes = file::read(&path, file::MOST_MANIFEST).unwrap_or_default();
-        let journal: Journal = serde_json::from_slice(&bytes).unwrap_or_default();
+        let journal = Journal::parse(bytes).unwrap_or_default();
         let used = fs::metadata(&path).and_then(|found| found.modified()).unwrap_or(SystemTime::UNIX_EPOCH);
-        for stage in journal.stages {
+        for stage in journal.stages() {
             for key in stage.keys.iter().map(|record| record.key).chain(stage.whole) {
                 let known = keys.entry(key).or_insert(used);
                 *known = used.max(*known);

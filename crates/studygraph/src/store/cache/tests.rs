@@ -95,8 +95,8 @@ fn cleaning_keeps_what_journals_name_and_waits_for_nobody() {
     let (config, code, demand) = (start, start, start);
     let record = KeyRecord { key: key("a"), config, fields, axis: None, code, seed: None, demand, inputs };
     let stage = JournalStage { name: "s".into(), keys: vec![record], ..JournalStage::default() };
-    cache.put_journal("study", &Journal { stages: vec![stage.clone()] });
-    assert_eq!(cache.journal("study").stages, [stage]);
+    cache.put_journal("study", &Journal::of(std::slice::from_ref(&stage)));
+    assert_eq!(cache.journal("study").stages().collect::<Vec<_>>(), [stage]);
     fs::write(cache.path(key("a")).with_file_name(".partial-x"), "left behind").unwrap();
 
     let busy = Cache::clean(folder.path(), Remove::All, false).unwrap_err();
@@ -200,7 +200,7 @@ fn the_longest_unused_goes_first_and_what_is_kept_never() {
         inputs: Arc::default(),
     };
     let stage = JournalStage { name: "s".into(), keys: vec![record], ..JournalStage::default() };
-    cache.put_journal("study", &Journal { stages: vec![stage] });
+    cache.put_journal("study", &Journal::of(&[stage]));
     let journal = cache.journal_path("study");
     let noted = || fs::metadata(&journal).unwrap().modified().unwrap();
     let before = noted();

@@ -12,8 +12,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::lines::Lines;
 use super::{
-    ColumnRecord, Config, FileRecord, Machine, Manifest, OmissionRecord, PartsRecord, Program, Source, StageRecord,
-    StudyFolder, TableRecord,
+    ColumnRecord, Config, FileRecord, Machine, Manifest, More, OmissionRecord, PartsRecord, Program, Source,
+    StageRecord, StudyFolder, TableRecord,
 };
 use crate::store::journal::Failed;
 use crate::store::key_record::{KeyRecord, Short};
@@ -310,6 +310,7 @@ impl<'de> Deserialize<'de> for Manifest {
             seconds: text.seconds,
             tolerances: text.tolerances.into_owned(),
             files: text.files.into_owned(),
+            more: More::default(),
         })
     }
 }

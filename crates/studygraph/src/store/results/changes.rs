@@ -5,7 +5,7 @@
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
-use super::{FileState, Folder, Known, PAGE, complete, here, is_drawn};
+use super::{FileState, Folder, Known, PAGE, here, is_drawn};
 use crate::store::bundle::{self, is_bundle};
 use crate::store::manifest::{Manifest, OmissionRecord, StageRecord, TableRecord};
 
@@ -42,10 +42,10 @@ pub(super) fn with_earlier_tables<'m>(old: Option<&Known>, manifest: &'m Manifes
     if !bundle::is_assigned(manifest) {
         bundle::assign(new.to_mut());
     }
-    let Some(old) = old.filter(|_| !manifest.stages.iter().all(complete)) else { return new };
+    let Some(old) = old.filter(|_| !manifest.stages.iter().all(StageRecord::is_complete)) else { return new };
     let stages: HashMap<(&str, &str), &StageRecord> =
         old.manifest.stages.iter().map(|stage| ((&*stage.name, &*stage.kind), stage)).collect();
-    for (index, stage) in manifest.stages.iter().enumerate().filter(|(_, stage)| !complete(stage)) {
+    for (index, stage) in manifest.stages.iter().enumerate().filter(|(_, stage)| !stage.is_complete()) {
         let earlier = stages.get(&(&*stage.name, &*stage.kind)).copied();
         let intact = |table: &TableRecord| old.table_state(table) == FileState::Intact;
         if let Some(earlier) = earlier.filter(|earlier| earlier.tables.iter().all(intact)) {
@@ -113,6 +113,21 @@ pub(super) fn say_the_same(one: &Manifest, other: &Manifest) -> bool {
         && one.stages.iter().zip(&other.stages).all(|(one, other)| essence_of_stage(one) == essence_of_stage(other))
 }
 
+/// Leaves the records of stages that say nothing new as they were: a difference between two commits is what changed, not what
+/// was looked up again.
+pub(super) fn keep_records(old: Vec<StageRecord>, new: &mut [StageRecord]) {
+    let places: HashMap<String, usize> =
+        old.iter().zip(0..).map(|(stage, place)| (stage.name.clone(), place)).collect();
+    let mut old: Vec<Option<StageRecord>> = old.into_iter().map(Some).collect();
+    for stage in new {
+        let earlier = places.get(&stage.name).and_then(|&place| old[place].take());
+        let same = |earlier: &StageRecord| essence_of_stage(earlier) == essence_of_stage(stage);
+        if let Some(earlier) = earlier.filter(same) {
+            *stage = earlier;
+        }
+    }
+}
+
 // Every field is named, so that a new one has to be thought of; nothing is copied, since a run with nothing to do comes by.
 fn essence(manifest: &Manifest) -> impl PartialEq {
     let Manifest {
@@ -130,15 +145,16 @@ fn essence(manifest: &Manifest) -> impl PartialEq {
         stages: _,
         tolerances,
         files: _,
+        more: _,
     } = manifest;
     (format, study, title, seed, source, study_digest, tolerances)
 }
 
-fn essence_of_stage(stage: &StageRecord) -> impl PartialEq {
+pub(super) fn essence_of_stage(stage: &StageRecord) -> impl PartialEq {
     let StageRecord { name, kind, version, keys, config, status, why, seconds: _, work, warnings, left_out, tables } =
         stage;
     // What a finished stage did this time is not part of what it gave.
-    let ended = (!complete(stage)).then_some((status, why));
+    let ended = (!stage.is_complete()).then_some((status, why));
     let left_out: Vec<_> = left_out.iter().map(|OmissionRecord { what, why, saved_seconds: _ }| (what, why)).collect();
     (name, kind, version, keys, config, ended, work, warnings, left_out, tables)
 }

@@ -7,8 +7,8 @@ use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::sync::Arc;
 
-use super::publish::{Draw, Drawn, Listed, is_absent, worse};
-use super::{FIGURES, Folder, MEASURED, PAGE, here, is_drawn};
+use super::publish::{Draw, Drawn, Listed, Source, is_absent, worse};
+use super::{Changes, FIGURES, Folder, Known, MEASURED, PAGE, here, is_drawn};
 use crate::store::bundle::is_bundle;
 use crate::store::error::StoreError;
 use crate::store::file;
@@ -36,6 +36,41 @@ impl Folder {
             (_, Some(fault)) => Err(fault.to_string()),
             (drawn, None) => drawn,
         }
+    }
+
+    /// Draws and writes page and figures, or lists those of before. Gives by whom they were drawn, and why there are none.
+    pub(super) fn put_pages(
+        &self,
+        old: Option<&Known>,
+        manifest: &Manifest,
+        changes: &mut Changes,
+        listed: &mut Listed,
+        source: Source<'_>,
+    ) -> Result<(String, Option<String>), StoreError> {
+        let mut undrawn = None;
+        let earlier: Vec<String> =
+            old.iter().flat_map(|old| &old.manifest.files).map(|record| record.file.clone()).collect();
+        let Some(draw) = source.draw.filter(|_| changes.drawn) else {
+            let drawn_by = old.map_or_else(String::new, |old| old.drawn_by().to_owned());
+            earlier.iter().filter(|file| is_drawn(file)).for_each(|file| listed.keep(old, file, None));
+            self.opened.clear();
+            return Ok((drawn_by, None));
+        };
+        (source.next)(PAGE)?;
+        let drawn = self.drawings(manifest, draw);
+        // It may have taken long.
+        (source.next)(PAGE)?;
+        match drawn.and_then(|drawn| self.put_drawn(drawn)) {
+            Ok(drawn) => {
+                changes.remove.extend(self.former(&earlier, &drawn));
+                listed.files.extend(drawn.files);
+                listed.seen.extend(drawn.seen);
+            }
+            // Tables are worth more than their picture: they are published without.
+            Err(problem) => undrawn = Some(problem),
+        }
+        self.opened.clear();
+        Ok((source.code.to_owned(), undrawn))
     }
 
     pub(super) fn put_drawn(&self, drawn: Vec<Drawn>) -> Result<Listed, String> {

@@ -12,8 +12,8 @@ use std::fs;
 use std::io::ErrorKind;
 use std::sync::Arc;
 
-use super::changes::{compare, say_the_same, with_earlier_tables};
-use super::{Changes, FileState, Folder, Known, MANIFEST, PAGE, held_text, here, is_drawn, split};
+use super::changes::{compare, keep_records, say_the_same, with_earlier_tables};
+use super::{Changes, FileState, Folder, Known, MANIFEST, held_text, here, is_drawn, split};
 use crate::store::bundle::{self, is_bundle};
 use crate::store::error::StoreError;
 use crate::store::facts::Facts;
@@ -91,7 +91,7 @@ pub struct Published {
 #[derive(Default)]
 pub(super) struct Listed {
     pub(super) files: Vec<FileRecord>,
-    seen: Vec<Seen>,
+    pub(super) seen: Vec<Seen>,
 }
 
 impl Folder {
@@ -235,7 +235,9 @@ impl Folder {
         }
         let stands = old.as_ref().is_some_and(|old| say_the_same(&old.manifest, &new));
         // Thousands of them are a fifth of what is held, and nobody asks for them from here on.
-        let stages = old.as_mut().map(Known::take_stages).filter(|_| stands);
+        if let Some(old) = &mut old {
+            keep_records(old.take_stages(), &mut new.stages);
+        }
         if changes.hdf5 {
             (source.next)(&self.hdf5_file())?;
             self.put_hdf5(&mut listed, &new)?;
@@ -243,13 +245,13 @@ impl Folder {
             listed.keep(old.as_ref(), &self.hdf5_file(), None);
         }
         new.files.clear();
-        new = match (old.as_ref().zip(stages), facts) {
+        new = match (old.as_ref().filter(|_| stands), facts) {
             // Files that were missing are there again, and nothing else is new: the record of who computed it stands.
-            (Some((old, stages)), _) => {
+            (Some(old), _) => {
                 let Manifest { program, study_folder, machine, written, seconds, .. } = &old.manifest;
                 let (program, study_folder) = (program.clone(), study_folder.clone());
                 let (machine, written) = (machine.clone(), written.clone());
-                Manifest { program, study_folder, machine, written, seconds: *seconds, stages, ..new }
+                Manifest { program, study_folder, machine, written, seconds: *seconds, ..new }
             }
             (_, Some(facts)) => {
                 let Facts { program, study_folder, machine, written } = facts();
@@ -257,46 +259,31 @@ impl Folder {
             }
             (_, None) => new,
         };
-        let mut drawn_by = source.code.to_owned();
-        let mut undrawn = None;
-        let earlier: Vec<String> =
-            old.iter().flat_map(|old| &old.manifest.files).map(|record| record.file.clone()).collect();
-        match source.draw.filter(|_| changes.drawn) {
-            None => {
-                drawn_by = old.as_ref().map_or_else(String::new, |old| old.drawn_by().to_owned());
-                earlier.iter().filter(|file| is_drawn(file)).for_each(|file| listed.keep(old.as_ref(), file, None));
-            }
-            Some(draw) => {
-                (source.next)(PAGE)?;
-                let drawn = self.drawings(&new, draw);
-                // It may have taken long.
-                (source.next)(PAGE)?;
-                match drawn.and_then(|drawn| self.put_drawn(drawn)) {
-                    Ok(drawn) => {
-                        changes.remove.extend(self.former(&earlier, &drawn));
-                        listed.files.extend(drawn.files);
-                        listed.seen.extend(drawn.seen);
-                    }
-                    // Tables are worth more than their picture: they are published without.
-                    Err(problem) => undrawn = Some(problem),
-                }
-            }
-        }
-        self.opened.clear();
+        let (drawn_by, undrawn) = self.put_pages(old.as_ref(), &new, &mut changes, &mut listed, source)?;
         self.remove(&changes.remove)?;
         new.files = listed.files;
         let text = new.text().map_err(unwritten)?;
-        let seen = listed.seen.clone();
-        Index::new(index::digest(&text), drawn_by, listed.seen).write(self.path())?;
+        self.put_manifest(&text, old.is_some(), drawn_by, listed.seen.clone())?;
+        Ok(Published { manifest: new, changes, undrawn, seen: listed.seen })
+    }
+
+    /// Writes the index, and then the manifest that says that all is as it should be.
+    pub(super) fn put_manifest(
+        &self,
+        text: &[u8],
+        replaces: bool,
+        drawn_by: String,
+        seen: Vec<Seen>,
+    ) -> Result<(), StoreError> {
+        Index::new(index::digest(text), drawn_by, seen).write(self.path())?;
         // A manifest that replaces another is there whole, or the other one is: what it lists would be nobody's.
-        let durability = if old.is_some() { Durability::Synced } else { Durability::Lazy };
-        file::write(&self.path().join(MANIFEST), &text, durability)?;
-        Ok(Published { manifest: new, changes, undrawn, seen })
+        let durability = if replaces { Durability::Synced } else { Durability::Lazy };
+        file::write(&self.path().join(MANIFEST), text, durability)
     }
 
     /// Takes whatever is about to be replaced from the list: if this run is killed, the next one must not take a new file
     /// for the old one. `text` is the manifest's, where it has one that is whole.
-    fn strike(&self, old: &Known, text: Option<Vec<u8>>, changes: &Changes) -> Result<(), StoreError> {
+    pub(super) fn strike(&self, old: &Known, text: Option<Vec<u8>>, changes: &Changes) -> Result<(), StoreError> {
         let written: HashSet<&String> = changes.tables.iter().chain(&changes.files).collect();
         let replaced = |file: &String| {
             written.contains(file) || (changes.hdf5 && *file == self.hdf5_file()) || (changes.drawn && is_drawn(file))
@@ -365,14 +352,14 @@ impl Folder {
 
 impl Listed {
     /// Lists a file that was written.
-    fn add(&mut self, seen: Seen, varies: bool) {
+    pub(super) fn add(&mut self, seen: Seen, varies: bool) {
         let (bytes, digest) = (Some(seen.bytes).filter(|_| !varies), Some(seen.digest.clone()).filter(|_| !varies));
         self.files.push(FileRecord { file: seen.file.clone(), bytes, digest, varies });
         self.seen.push(seen);
     }
 
     /// Lists a file that nobody writes now, as [`Known::kept`].
-    fn keep(&mut self, old: Option<&Known>, file: &str, values: Option<bool>) {
+    pub(super) fn keep(&mut self, old: Option<&Known>, file: &str, values: Option<bool>) {
         let Some((record, seen)) = old.and_then(|old| old.kept(file, values)) else { return };
         self.files.push(record);
         self.seen.extend(seen);
@@ -413,6 +400,6 @@ pub fn hdf5_bytes(
 }
 
 #[allow(clippy::needless_pass_by_value)] // for `map_err`
-fn unwritten(error: serde_json::Error) -> StoreError {
+pub(super) fn unwritten(error: serde_json::Error) -> StoreError {
     StoreError::Format { table: MANIFEST.to_owned(), problem: error.to_string() }
 }

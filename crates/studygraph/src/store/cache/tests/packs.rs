@@ -169,7 +169,7 @@ fn cleaning_rewrites_packs() {
     };
     let wanted = [0, ALONE + 1, MANY - 1];
     let stage = JournalStage { name: "s".into(), keys: wanted.map(record).into(), ..JournalStage::default() };
-    Cache::open(folder.path()).unwrap().put_journal("study", &Journal { stages: vec![stage] });
+    Cache::open(folder.path()).unwrap().put_journal("study", &Journal::of(&[stage]));
     fs::write(folder.path().join("packs/notes.txt"), "mine").unwrap();
     fs::write(folder.path().join("packs/.partial-1-1"), "left").unwrap();
     let before = fs::metadata(&packs(folder.path())[1]).unwrap().len();

@@ -1,0 +1,160 @@
+//! The text of a manifest cut at its stages without being read: of thousands of stages a run may have to do with a few.
+//!
+//! Only of a text as this program writes it (`lines.rs`): whatever else there is, is read as a whole. Must not know: what any
+//! field means, but that a stage begins with its name.
+
+use std::ops::Range;
+
+use memchr::memmem;
+
+use super::Manifest;
+
+const SCHEMAS: &[u8] = b"\n \"schemas\": {";
+const STAGES: &[u8] = b"\n \"stages\": [\n";
+/// Of a stage, and of the list.
+const BEGIN: &[u8] = b"  {\n   \"name\": \"";
+const KIND: &[u8] = b"\n   \"kind\": \"";
+const WARNINGS: &[u8] = b"\n   \"warnings\": [";
+const OMISSION: &[u8] = b"\n    {\"what\": ";
+const BETWEEN: &[u8] = b"\n  },\n";
+const END: &[u8] = b"\n ]";
+
+/// A text, and where its parts lie.
+pub struct Cut<'t> {
+    text: &'t [u8],
+    /// Where what its tables are begins.
+    schemas: usize,
+    /// The records of its stages, without what stands between them.
+    stages: Vec<Range<usize>>,
+}
+
+impl<'t> Cut<'t> {
+    /// None where the text is not as this program writes it, or it has no stages.
+    #[must_use]
+    pub fn of(text: &'t [u8]) -> Option<Self> {
+        let schemas = memmem::find(text, SCHEMAS)?;
+        let start = schemas + memmem::find(&text[schemas..], STAGES)? + STAGES.len();
+        // Inside of stages no line begins as near to the margin.
+        let end = start + memmem::find(&text[start..], END)?;
+        let mut stages = Vec::new();
+        let mut from = start;
+        let breaks = memmem::find_iter(&text[start..end], BETWEEN).map(|at| start + at);
+        for next in breaks.map(|at| at + BETWEEN.len()).chain([end + 2]) {
+            // Without a comma and a line feed.
+            let stage = from..next - 2;
+            (text[stage.clone()].starts_with(BEGIN) && text[stage.clone()].ends_with(b"\n  }")).then_some(())?;
+            stages.push(stage);
+            from = next;
+        }
+        Some(Self { text, schemas, stages })
+    }
+
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.stages.len()
+    }
+
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.stages.is_empty()
+    }
+
+    /// The names of the stages, as they are written.
+    pub fn names(&self) -> impl Iterator<Item = &'t [u8]> {
+        self.stages.iter().map(|stage| {
+            let name = &self.text[stage.start + BEGIN.len()..stage.end];
+            &name[..memchr::memchr(b'"', name).unwrap_or(0)]
+        })
+    }
+
+    /// The kinds of the stages; empty where one is not a plain word.
+    pub fn kinds(&self) -> impl Iterator<Item = &'t str> {
+        let of = |stage: &[u8]| {
+            let at = memmem::find(stage, KIND)? + KIND.len();
+            let end = memchr::memchr(b'"', &stage[at..])?;
+            Some(at..at + end)
+        };
+        self.stages.iter().map(move |stage| {
+            let stage = &self.text[stage.clone()];
+            of(stage).and_then(|kind| std::str::from_utf8(&stage[kind]).ok()).unwrap_or_default()
+        })
+    }
+
+    /// Whether a stage warns.
+    #[must_use]
+    pub fn warns(&self, place: usize) -> bool {
+        memmem::find(self.stage(place), WARNINGS).is_some()
+    }
+
+    /// How much was left out in a stage.
+    #[must_use]
+    pub fn omissions(&self, place: usize) -> usize {
+        memmem::find_iter(self.stage(place), OMISSION).count()
+    }
+
+    /// The record of a stage, as it is written.
+    #[must_use]
+    pub fn stage(&self, place: usize) -> &'t [u8] {
+        &self.text[self.stages[place].clone()]
+    }
+
+    fn before(&self) -> usize {
+        self.stages.first().map_or(0, |first| first.start)
+    }
+
+    fn behind(&self) -> &'t [u8] {
+        &self.text[self.stages.last().map_or(0, |last| last.end)..]
+    }
+
+    /// The manifest with these stages alone.
+    ///
+    /// # Errors
+    /// When they cannot be read.
+    pub fn read(&self, places: impl Iterator<Item = usize>) -> Result<Manifest, serde_json::Error> {
+        let mut text = self.text[..self.before()].to_vec();
+        join(&mut text, places.map(|place| self.stage(place)));
+        text.extend_from_slice(self.behind());
+        serde_json::from_slice(&text)
+    }
+
+    /// The text with what `other` says besides stages, and with its stages in these places; none where it is not of as many
+    /// stages.
+    ///
+    /// # Errors
+    /// When it cannot be written as JSON, which cannot be.
+    pub fn text_with(&self, other: &Manifest, places: &[usize]) -> Result<Option<Vec<u8>>, serde_json::Error> {
+        let other = other.text()?;
+        let Some(other) = Cut::of(&other).filter(|other| other.len() == places.len()) else { return Ok(None) };
+        let mut text = Vec::with_capacity(self.text.len() + other.text.len());
+        text.extend_from_slice(&other.text[..other.schemas]);
+        text.extend_from_slice(&self.text[self.schemas..self.before()]);
+        let mut others = places.iter().enumerate().peekable();
+        let stages = (0..self.len()).map(|place| match others.next_if(|(_, other)| **other == place) {
+            Some((of_other, _)) => other.stage(of_other),
+            None => self.stage(place),
+        });
+        join(&mut text, stages);
+        text.extend_from_slice(other.behind());
+        Ok(others.next().is_none().then_some(text))
+    }
+
+    /// Whether the stages in these places are written as a manifest of them alone would be.
+    #[must_use]
+    pub fn says(&self, part: &Manifest, places: &[usize]) -> bool {
+        let Ok(text) = part.text() else { return false };
+        let alike = |part: Cut| {
+            part.len() == places.len()
+                && places.iter().enumerate().all(|(at, &place)| part.stage(at) == self.stage(place))
+        };
+        Cut::of(&text).is_some_and(alike)
+    }
+}
+
+fn join<'t>(text: &mut Vec<u8>, stages: impl Iterator<Item = &'t [u8]>) {
+    for (place, stage) in stages.enumerate() {
+        if place > 0 {
+            text.extend_from_slice(b",\n");
+        }
+        text.extend_from_slice(stage);
+    }
+}

@@ -1,0 +1,95 @@
+//! What a page shows of a manifest with thousands of stages.
+//!
+//! Must not know: how it is shown.
+
+use std::collections::BTreeMap;
+
+use super::{Manifest, StageRecord};
+use crate::store::bundle::MANY;
+
+/// Stages of a kind that are shown where there are more than their tables have files for.
+const SHOWN: usize = 8;
+
+/// What a manifest stands for that has not all of its stages.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct More {
+    /// How many stages there are besides, by kind.
+    pub stages: BTreeMap<String, usize>,
+    /// How much was left out in them.
+    pub omissions: usize,
+}
+
+/// The places of stages that are shown, by their kinds: all where a stage of the kind `reader` says what is shown, otherwise of
+/// very many of a kind the first ones.
+#[must_use]
+pub fn places(kinds: &[&str], reader: &str) -> Vec<usize> {
+    let mut counts: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+    kinds.iter().for_each(|kind| counts.entry(kind).or_default().0 += 1);
+    let is_all = counts.contains_key(reader);
+    let mut is_shown = |kind: &str| {
+        let Some((all, met)) = counts.get_mut(kind) else { return false };
+        *met += 1;
+        is_all || *all <= MANY || *met <= SHOWN
+    };
+    (0..kinds.len()).filter(|&place| is_shown(kinds[place])).collect()
+}
+
+impl More {
+    /// Counts stages that are not shown.
+    pub fn add(&mut self, kind: &str, omissions: usize) {
+        *self.stages.entry(kind.to_owned()).or_default() += 1;
+        self.omissions += omissions;
+    }
+}
+
+impl Manifest {
+    /// The same with the stages that a page shows, those that warn, and those that did not come to their end.
+    #[must_use]
+    pub fn shown(&self, reader: &str) -> Self {
+        let kinds: Vec<&str> = self.stages.iter().map(|stage| stage.kind.as_str()).collect();
+        let mut places = places(&kinds, reader).into_iter().peekable();
+        let (mut stages, mut more) = (Vec::new(), self.more.clone());
+        for (place, stage) in self.stages.iter().enumerate() {
+            if places.next_if_eq(&place).is_some() || stage.is_told() {
+                stages.push(stage.clone());
+            } else {
+                more.add(&stage.kind, stage.left_out.len());
+            }
+        }
+        Self { stages, more, ..self.without_stages() }
+    }
+
+    /// What it says besides stages.
+    pub(in crate::store) fn without_stages(&self) -> Self {
+        Self {
+            format: self.format,
+            study: self.study.clone(),
+            title: self.title.clone(),
+            seed: self.seed,
+            source: self.source.clone(),
+            study_digest: self.study_digest.clone(),
+            program: self.program.clone(),
+            study_folder: self.study_folder.clone(),
+            machine: self.machine.clone(),
+            written: self.written.clone(),
+            seconds: self.seconds,
+            stages: Vec::new(),
+            tolerances: self.tolerances.clone(),
+            files: self.files.clone(),
+            more: self.more.clone(),
+        }
+    }
+}
+
+impl StageRecord {
+    /// Whether it came to its end: its tables are there.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        matches!(self.status.as_str(), "hit" | "ran")
+    }
+
+    /// Whether somebody is told of it.
+    pub(in crate::store) fn is_told(&self) -> bool {
+        !self.is_complete() || !self.warnings.is_empty()
+    }
+}
