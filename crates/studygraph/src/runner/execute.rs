@@ -4,6 +4,7 @@
 //! and the next one goes on from there. Failures are never kept. Tables stay in memory only while a stage that is not
 //! finished reads them. Order and number of threads enter no result. Must not know: how progress is drawn.
 
+use std::borrow::Cow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -86,7 +87,7 @@ pub fn run(
         observer.event(&Event::Warning { message });
     }
     let published = published?;
-    let recalled = || Recalled::of(study, &graph);
+    let recalled = || Recalled::of(study, &graph).map(Cow::Owned);
     note::keep(study, (cache, options, folder), (&outcome, &published), recalled, None);
     Ok((outcome, published))
 }
@@ -102,7 +103,7 @@ pub fn run_part(
     around: Surroundings<'_>,
 ) -> Result<Option<(Outcome, Published)>, RunError> {
     let Surroundings { cache, observer, folder, .. } = around;
-    let (outcome, graph) = executed(&part.study, &part.options, around)?;
+    let (outcome, _) = executed(&part.study, &part.options, around)?;
     let of_part = results::Part {
         manifest: outcome.manifest(&part.study),
         stages: part.stages(),
@@ -119,7 +120,7 @@ pub fn run_part(
         observer.event(&Event::Warning { message });
     }
     let Some(published) = published? else { return Ok(None) };
-    let recalled = || part.recalled(&graph);
+    let recalled = || Some(Cow::Borrowed(part.recalled()));
     note::keep(&part.study, (cache, options, folder), (&outcome, &published), recalled, Some(&part.note));
     Ok(Some((outcome, published)))
 }

@@ -6,6 +6,7 @@
 //! Beside it lies what need not be read again of a study whose text changed since (`recall.rs`). Must not know: how a run finds
 //! out that there is nothing to do.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -140,11 +141,11 @@ fn stages(note: &Path) -> PathBuf {
 
 /// Notes that a study is up to date, where a run came to its end and all it needs is on the disk; `earlier`: the note of the
 /// run whose stages were not read again.
-pub(super) fn keep(
+pub(super) fn keep<'r>(
     study: &Study,
     (cache, options, folder): (&Cache, &Options, &Folder),
     (outcome, published): (&Outcome, &Published),
-    recalled: impl FnOnce() -> Option<Recalled>,
+    recalled: impl FnOnce() -> Option<Cow<'r, Recalled>>,
     earlier: Option<&Note>,
 ) {
     let results = folder.path().parent().unwrap_or(folder.path());
@@ -166,7 +167,7 @@ pub(super) fn keep(
         return;
     }
     note.recalled = recalled().and_then(|recalled| {
-        let bytes = postcard::to_stdvec(&recalled).ok()?;
+        let bytes = postcard::to_stdvec(&*recalled).ok()?;
         fs::create_dir_all(path.parent()?).ok()?;
         file::write(&self::stages(&path), &bytes, Durability::Lazy).ok()?;
         Some(blake3::hash(&bytes).to_string())

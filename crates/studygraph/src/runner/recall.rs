@@ -55,9 +55,8 @@ pub struct Part {
     /// With what the stages that are not read ask of those that are.
     pub options: Options,
     pub(super) note: Note,
-    earlier: Recalled,
-    /// Places in the file of the stages that are read.
-    read: Vec<usize>,
+    /// With what is to be kept of the stages that are read.
+    recalled: Recalled,
 }
 
 fn start(digest: &[u8; 32]) -> [u8; 16] {
@@ -109,12 +108,19 @@ impl Recalled {
             demand: [0; 16],
         };
         let stages = blocks.stages.iter().map(nothing).collect();
-        Self { rest: rest(&blocks), kinds: Vec::new(), asked: Vec::new(), stages }.with(study, &blocks, graph, &all)
+        let known = places(&blocks).filter(|_| is_aligned(study, &blocks, &all))?;
+        let nothing = Self { rest: rest(&blocks), kinds: Vec::new(), asked: Vec::new(), stages };
+        nothing.with(study, (&blocks, &known), graph, &all)
     }
 
     /// The same with what is to be kept of the stages that were read.
-    fn with(mut self, study: &Study, blocks: &Blocks, graph: &Graph, read: &[usize]) -> Option<Self> {
-        let known = places(blocks).filter(|_| is_aligned(study, blocks, read))?;
+    fn with(
+        mut self,
+        study: &Study,
+        (blocks, known): (&Blocks, &HashMap<&str, u32>),
+        graph: &Graph,
+        read: &[usize],
+    ) -> Option<Self> {
         let mut kinds: HashMap<String, u32> =
             (0..).zip(&self.kinds).map(|(place, kind)| (kind.clone(), place)).collect();
         let mut asked: HashMap<Vec<Want>, u32> =
@@ -125,7 +131,7 @@ impl Recalled {
                 self.kinds.push(kind.to_owned());
                 index(self.kinds.len() - 1)
             });
-            let mut mentions = mentions(block.text, &known);
+            let mut mentions = mentions(block.text, known);
             mentions.retain(|&other| other != index(place));
             let asks = graph.inputs[node].iter().map(|input| {
                 let wants = *asked.entry(input.wants.clone()).or_insert_with(|| {
@@ -166,7 +172,7 @@ impl Recalled {
 
     /// The places of the stages that must be read: what changed, whatever speaks of it, and what all of these speak of, to the
     /// end; none where there are others than before.
-    fn to_be_read(&self, blocks: &Blocks) -> Option<Vec<usize>> {
+    fn to_be_read(&self, blocks: &Blocks, known: &HashMap<&str, u32>) -> Option<Vec<usize>> {
         let is_same = |(block, stage): (&Block, &Recollection)| block.name == stage.name;
         if blocks.stages.len() != self.stages.len() || !blocks.stages.iter().zip(&self.stages).all(is_same) {
             return None;
@@ -177,7 +183,6 @@ impl Recalled {
         }
         let changed = blocks.stages.iter().zip(&self.stages).map(|(block, stage)| lines(block) != stage.lines);
         let changed: Vec<bool> = changed.collect();
-        let known = places(blocks)?;
         let mut is_read = vec![false; self.stages.len()];
         let mut open: Vec<usize> = (0..changed.len()).filter(|&place| changed[place]).collect();
         let touched = reached(open.clone(), self.stages.len(), |place| readers[place].iter().map(|&at| at as usize));
@@ -191,7 +196,7 @@ impl Recalled {
             if !changed[place] {
                 return before.clone();
             }
-            mentions(blocks.stages[place].text, &known).into_iter().chain(before.iter().copied()).collect()
+            mentions(blocks.stages[place].text, known).into_iter().chain(before.iter().copied()).collect()
         };
         for place in reached(open, self.stages.len(), |place| speaks_of(place).into_iter().map(|at| at as usize)) {
             is_read[place] = true;
@@ -218,7 +223,8 @@ pub fn part(at: &Where<'_>, program: &'static Program, options: &Options) -> Opt
     let (note, earlier) = note::recalled(at, program.about.code, options)?;
     let text = text_of(at.study).ok()?;
     let blocks = Blocks::cut(&text).filter(|blocks| rest(blocks) == earlier.rest)?;
-    let read = earlier.to_be_read(&blocks)?;
+    let known = places(&blocks)?;
+    let read = earlier.to_be_read(&blocks, &known)?;
     if 2 * read.len() > blocks.stages.len() {
         return None;
     }
@@ -238,7 +244,11 @@ pub fn part(at: &Where<'_>, program: &'static Program, options: &Options) -> Opt
     }
     let options = earlier.asking(&read, options);
     let graph = Graph::new(&study, &options.wanted).ok()?;
-    (earlier.is_alike(&study, &graph, &read)).then_some(Part { study, options, note, earlier, read })
+    if !earlier.is_alike(&study, &graph, &read) {
+        return None;
+    }
+    let recalled = earlier.with(&study, (&blocks, &known), &graph, &read)?;
+    Some(Part { study, options, note, recalled })
 }
 
 impl Recalled {
@@ -279,14 +289,13 @@ impl Recalled {
 impl Part {
     /// What is to be kept after a run.
     #[must_use]
-    pub fn recalled(&self, graph: &Graph) -> Option<Recalled> {
-        let blocks = Blocks::cut(&self.study.text)?;
-        self.earlier.clone().with(&self.study, &blocks, graph, &self.read)
+    pub fn recalled(&self) -> &Recalled {
+        &self.recalled
     }
 
     /// How many stages the study has, read or not.
     #[must_use]
     pub fn stages(&self) -> usize {
-        self.earlier.stages.len()
+        self.recalled.stages.len()
     }
 }

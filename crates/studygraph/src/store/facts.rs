@@ -51,6 +51,9 @@ impl Facts {
 /// The commit (none before the first) and whether tracked or new files differ from it; one process answers both.
 fn git(folder: &Path) -> Option<(Option<String>, bool)> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    if !may_be_in_git(folder) {
+        return None;
+    }
     let status = ["status", "--porcelain=v2", "--branch"];
     let output = Command::new("git").arg("-C").arg(folder).args(status).output().ok()?;
     if !output.status.success() {
@@ -60,6 +63,12 @@ fn git(folder: &Path) -> Option<(Option<String>, bool)> {
     let commit = text.lines().find_map(|line| line.strip_prefix("# branch.oid "));
     let dirty = text.lines().any(|line| !line.starts_with('#'));
     Some((commit.filter(|commit| *commit != "(initial)").map(str::to_owned), dirty))
+}
+
+/// Whether there is a work tree around a folder, as git looks for one. To start git for nothing takes as long as a small study.
+fn may_be_in_git(folder: &Path) -> bool {
+    let Ok(folder) = folder.canonicalize() else { return true };
+    std::env::var_os("GIT_DIR").is_some() || folder.ancestors().any(|folder| folder.join(".git").exists())
 }
 
 fn processor() -> String {

@@ -129,26 +129,39 @@ fn is_name(name: &str) -> bool {
 
 /// Whether there are no anchors, aliases and merges, no escapes, and no white space but blanks and line feeds.
 fn is_plain(text: &[u8]) -> bool {
-    let mut before = b'\n';
-    text.iter().enumerate().all(|(at, &byte)| {
-        let opens = matches!(before, b'\n' | b' ' | b'[' | b'{' | b',' | b'(' | b':' | b'-');
-        before = byte;
-        match byte {
-            b'&' | b'*' => !opens || text.get(at + 1).is_none_or(|next| matches!(next, b' ' | b'\n')),
-            b'\\' | b'\t' | b'\r' | b'\x0b' | b'\x0c' => false,
-            b'<' => text.get(at + 1) != Some(&b'<'),
-            // A byte order mark, and line ends that are no ASCII.
-            0xef => text.get(at + 1) != Some(&0xbb),
-            0xc2 => text.get(at + 1) != Some(&0x85),
-            0xe2 => !matches!(text.get(at + 1..at + 3), Some([0x80, 0xa8 | 0xa9])),
-            _ => true,
+    const LOOKED_AT: [bool; 256] = {
+        let (mut table, mut at) = ([false; 256], 0);
+        let bytes = b"&*\\\t\r\x0b\x0c<\xef\xc2\xe2";
+        while at < bytes.len() {
+            table[bytes[at] as usize] = true;
+            at += 1;
         }
-    })
+        table
+    };
+    let is_fine = |(at, &byte): (usize, &u8)| match byte {
+        b'&' | b'*' => {
+            let before = at.checked_sub(1).map_or(b'\n', |before| text[before]);
+            let opens = matches!(before, b'\n' | b' ' | b'[' | b'{' | b',' | b'(' | b':' | b'-');
+            !opens || text.get(at + 1).is_none_or(|next| matches!(next, b' ' | b'\n'))
+        }
+        b'<' => text.get(at + 1) != Some(&b'<'),
+        // A byte order mark, and line ends that are no ASCII.
+        0xef => text.get(at + 1) != Some(&0xbb),
+        0xc2 => text.get(at + 1) != Some(&0x85),
+        0xe2 => !matches!(text.get(at + 1..at + 3), Some([0x80, 0xa8 | 0xa9])),
+        _ => false,
+    };
+    text.iter().enumerate().filter(|(_, byte)| LOOKED_AT[usize::from(**byte)]).all(is_fine)
 }
 
 /// At most so many values are in a text: each has one of these characters before or behind it.
 fn most_values(text: &[u8]) -> usize {
-    text.iter().filter(|byte| matches!(byte, b':' | b',' | b'\n' | b'[' | b'{' | b'-')).count() + 1
+    let of_piece = |piece: &[u8]| -> usize {
+        let is_next = |byte: &u8| u8::from(matches!(byte, b':' | b',' | b'\n' | b'[' | b'{' | b'-'));
+        // So few that a byte has room for them: many are counted at once.
+        usize::from(piece.iter().map(is_next).fold(0, u8::wrapping_add))
+    };
+    text.chunks(255).map(of_piece).sum::<usize>() + 1
 }
 
 /// The stages of `known` that a text may speak of, each once, ascending: every word that is the name of one, be it meant so or

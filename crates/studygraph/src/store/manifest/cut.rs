@@ -13,7 +13,8 @@ const SCHEMAS: &[u8] = b"\n \"schemas\": {";
 const STAGES: &[u8] = b"\n \"stages\": [\n";
 /// Of a stage, and of the list.
 const BEGIN: &[u8] = b"  {\n   \"name\": \"";
-const KIND: &[u8] = b"\n   \"kind\": \"";
+/// Behind a name.
+const KIND: &[u8] = b"\",\n   \"kind\": \"";
 const WARNINGS: &[u8] = b"\n   \"warnings\": [";
 const OMISSION: &[u8] = b"\n    {\"what\": ";
 const BETWEEN: &[u8] = b"\n  },\n";
@@ -69,27 +70,20 @@ impl<'t> Cut<'t> {
 
     /// The kinds of the stages; empty where one is not a plain word.
     pub fn kinds(&self) -> impl Iterator<Item = &'t str> {
-        let of = |stage: &[u8]| {
-            let at = memmem::find(stage, KIND)? + KIND.len();
-            let end = memchr::memchr(b'"', &stage[at..])?;
-            Some(at..at + end)
-        };
-        self.stages.iter().map(move |stage| {
-            let stage = &self.text[stage.clone()];
-            of(stage).and_then(|kind| std::str::from_utf8(&stage[kind]).ok()).unwrap_or_default()
+        self.stages.iter().zip(self.names()).map(|(stage, name)| {
+            let behind = &self.text[stage.start + BEGIN.len() + name.len()..stage.end];
+            let kind = behind.strip_prefix(KIND).unwrap_or_default();
+            std::str::from_utf8(&kind[..memchr::memchr(b'"', kind).unwrap_or(0)]).unwrap_or_default()
         })
     }
 
-    /// Whether a stage warns.
-    #[must_use]
-    pub fn warns(&self, place: usize) -> bool {
-        memmem::find(self.stage(place), WARNINGS).is_some()
-    }
-
-    /// How much was left out in a stage.
-    #[must_use]
-    pub fn omissions(&self, place: usize) -> usize {
-        memmem::find_iter(self.stage(place), OMISSION).count()
+    /// Of each stage whether it warns, and how much was left out in it.
+    pub fn told(&self) -> impl Iterator<Item = (bool, usize)> {
+        let (warnings, omission) = (memmem::Finder::new(WARNINGS), memmem::Finder::new(OMISSION));
+        self.stages.iter().map(move |stage| {
+            let stage = &self.text[stage.clone()];
+            (warnings.find(stage).is_some(), omission.find_iter(stage).count())
+        })
     }
 
     /// The record of a stage, as it is written.

@@ -283,21 +283,24 @@ impl Folder {
 
     /// Takes whatever is about to be replaced from the list: if this run is killed, the next one must not take a new file
     /// for the old one. `text` is the manifest's, where it has one that is whole.
-    pub(super) fn strike(&self, old: &Known, text: Option<Vec<u8>>, changes: &Changes) -> Result<(), StoreError> {
+    fn strike(&self, old: &Known, text: Option<Vec<u8>>, changes: &Changes) -> Result<(), StoreError> {
+        let Some(files) = self.left_by(old, changes) else { return Ok(()) };
+        let text = match text.and_then(|text| Manifest::with_other_files(text, &files)) {
+            Some(text) => text,
+            None => old.manifest.text_with(&files).map_err(unwritten)?,
+        };
+        file::write(&self.path().join(MANIFEST), &text, Durability::Synced)
+    }
+
+    /// The files of the list that are not about to be replaced; none where that is none of them.
+    pub(super) fn left_by(&self, old: &Known, changes: &Changes) -> Option<Vec<FileRecord>> {
         let written: HashSet<&String> = changes.tables.iter().chain(&changes.files).collect();
         let replaced = |file: &String| {
             written.contains(file) || (changes.hdf5 && *file == self.hdf5_file()) || (changes.drawn && is_drawn(file))
         };
         let earlier = &old.manifest.files;
         let files: Vec<FileRecord> = earlier.iter().filter(|record| !replaced(&record.file)).cloned().collect();
-        if files.len() == earlier.len() {
-            return Ok(());
-        }
-        let text = match text.and_then(|text| Manifest::with_other_files(text, &files)) {
-            Some(text) => text,
-            None => old.manifest.text_with(&files).map_err(unwritten)?,
-        };
-        file::write(&self.path().join(MANIFEST), &text, Durability::Synced)
+        (files.len() < earlier.len()).then_some(files)
     }
 
     pub(super) fn put(&self, listed: &mut Listed, file: &str, bytes: &[u8], varies: bool) -> Result<(), StoreError> {

@@ -6,6 +6,7 @@
 //! such a run, and nothing was touched. Must not know: the cache, how anything is drawn, who says that files are as they were.
 
 use std::collections::HashMap;
+use std::path::Path;
 use std::sync::Arc;
 
 use super::changes::essence_of_stage;
@@ -14,7 +15,7 @@ use super::{Changes, Folder, Known, MANIFEST, Published, Source, is_drawn};
 use crate::store::bundle::{self, Rows, is_bundle};
 use crate::store::error::StoreError;
 use crate::store::facts::Facts;
-use crate::store::file;
+use crate::store::file::{self, Durability};
 #[cfg(feature = "hdf5")]
 use crate::store::hdf5;
 use crate::store::manifest::{Cut, Manifest, More, StageRecord, TableRecord, shown_places};
@@ -63,7 +64,7 @@ impl Folder {
         let Some((own, new)) = placed(&cut, part.manifest) else { return Ok(None) };
         let Ok(old) = cut.read(own.iter().copied()) else { return Ok(None) };
         let Some(new) = taking_over(&old, new).filter(|_| cut.says(&old, &own)) else { return Ok(None) };
-        let old = Known::new(self.clone(), old, &text);
+        let old = Known::as_indexed(self.clone(), old);
         let tables = self.to_be_written(&old.manifest, &new, source)?;
         let Some(hdf5) = self.hdf5_with(&tables) else { return Ok(None) };
         let mut changes = Changes {
@@ -73,8 +74,16 @@ impl Folder {
             drawn: source.draw.is_some(),
             ..Changes::default()
         };
-        // From here on files are touched.
-        self.strike(&old, Some(text.clone()), &changes)?;
+        // What is about to be replaced is struck from the manifest; from here on files are touched.
+        let text = match self.left_by(&old, &changes) {
+            None => text,
+            Some(files) => {
+                let Some(text) = Manifest::with_other_files(text, &files) else { return Ok(None) };
+                file::write(&path, &text, Durability::Synced)?;
+                text
+            }
+        };
+        let cut = Cut::of(&text).ok_or_else(|| damaged(&path))?;
         file::sweep(self.path());
         let mut listed = self.put_changed(&old, tables, hdf5, source)?;
         let Facts { program, study_folder, machine, written } = facts();
@@ -83,7 +92,7 @@ impl Folder {
         let (drawn_by, undrawn) = self.put_pages(Some(&old), &shown, &mut changes, &mut listed, source)?;
         let new = Manifest { files: listed.files, ..new };
         self.remove(&changes.remove)?;
-        let text = cut.text_with(&new, &own).map_err(unwritten)?.unwrap_or(text);
+        let text = cut.text_with(&new, &own).map_err(unwritten)?.ok_or_else(|| damaged(&path))?;
         self.put_manifest(&text, true, drawn_by, listed.seen.clone())?;
         Ok(Some(Published { manifest: Manifest { more: shown.more, ..new }, changes, undrawn, seen: listed.seen }))
     }
@@ -166,6 +175,11 @@ impl Folder {
     }
 }
 
+/// What was as it should be a moment ago.
+fn damaged(path: &Path) -> StoreError {
+    StoreError::Damaged { path: path.display().to_string(), problem: "its stages are others than they were".to_owned() }
+}
+
 /// A manifest's stages in the order of a whole one, and their places there; none where one is not there.
 fn placed(cut: &Cut, mut part: Manifest) -> Option<(Vec<usize>, Manifest)> {
     let by_name: HashMap<&[u8], usize> = cut.names().zip(0..).collect();
@@ -229,13 +243,12 @@ fn shown(cut: &Cut, own: &[usize], new: &Manifest, reader: &str) -> Result<Manif
     let kinds: Vec<&str> = cut.kinds().collect();
     let mut by_kind = shown_places(&kinds, reader).into_iter().peekable();
     let (mut places, mut more) = (Vec::new(), More::default());
-    for (place, kind) in kinds.iter().enumerate() {
+    for ((place, kind), (warns, omissions)) in kinds.iter().enumerate().zip(cut.told()) {
         let own = own.binary_search(&place).ok().map(|at| &new.stages[at]);
-        let is_told = own.map_or_else(|| cut.warns(place), StageRecord::is_told);
-        if by_kind.next_if_eq(&place).is_some() || is_told {
+        if by_kind.next_if_eq(&place).is_some() || own.map_or(warns, StageRecord::is_told) {
             places.push(place);
         } else {
-            more.add(kind, own.map_or_else(|| cut.omissions(place), |stage| stage.left_out.len()));
+            more.add(kind, own.map_or(omissions, |stage| stage.left_out.len()));
         }
     }
     let mut stages = cut.read(places.iter().copied())?.stages;
