@@ -100,7 +100,7 @@ pub(super) fn plan_json(study: &Study, plan: &Plan) -> serde_json::Value {
         .map(|stage| {
             let omission = |omission: &Omission| {
                 let saved = omission.seconds(&stage.work, stage.seconds);
-                json!({ "what": omission.what, "why": omission.why, "saved_seconds": saved })
+                json!({ "what": *omission.what, "why": *omission.why, "saved_seconds": saved })
             };
             let left_out: Vec<_> = stage.left_out.iter().map(omission).collect();
             json!({

@@ -172,7 +172,7 @@ pub fn html(
     let is_worth = |left: &&OmissionRecord| left.saved_seconds.is_some_and(|saved| saved >= least);
     let left_out = remarks(&manifest.stages, &|stage| {
         let said = |left: &OmissionRecord| {
-            (left.what.clone(), left.why.clone(), left.saved_seconds.map_or_else(String::new, seconds))
+            (left.what.to_string(), left.why.to_string(), left.saved_seconds.map_or_else(String::new, seconds))
         };
         stage.left_out.iter().filter(is_worth).map(said).collect()
     });

@@ -7,7 +7,7 @@ use std::path::Path;
 use super::source::code;
 use super::{rust_files, words};
 
-/// The counted allocator, an unsafe trait; and the two calls of libhdf5 that its safe wrapper lacks.
+/// The counted allocator, an unsafe trait, and a call of the C library; the few calls of libhdf5 that its safe wrapper lacks.
 const MAY: [&str; 2] = ["crates/studygraph/src/stage/memory.rs", "crates/studygraph/src/store/hdf5/raw.rs"];
 
 /// Lines that handle memory by hand, or allow it.

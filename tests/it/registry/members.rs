@@ -173,7 +173,7 @@ fn methods_of_whole_pairs_ask_for_no_root_contact_or_coupling() {
         let node = loaded.nodes.iter().find(|node| node.name == "k0").unwrap();
         let omissions = node.stage.left_out(&demand(node.stage.as_ref(), true));
         for what in ["root curve", "contact law", "influence of neighbouring teeth"] {
-            let found = omissions.iter().find(|omission| omission.what == what);
+            let found = omissions.iter().find(|omission| *omission.what == *what);
             assert!(found.is_some_and(|omission| omission.why.contains(name)), "{what}");
         }
         let ran = walk(&loaded);

@@ -1,6 +1,6 @@
 //! SIGKILL at random moments of a study of very many stages: the next run goes on from there, and all come to the same.
 //!
-//! By itself few moments of a study of some hundred stages; `GEARSTUDY_KILLS=20x1000` kills at 20 moments of 1,000 stages.
+//! By itself few moments of a study of some hundred stages; `GEARSTUDY_KILLS=50x5000` kills at 50 moments of 5,000 stages.
 //! Must not know: how entries are kept.
 
 use std::fs;
@@ -75,17 +75,7 @@ fn kept(cache: &Path, manifest: &Manifest) -> Vec<String> {
 
 #[test]
 fn a_run_that_is_killed_at_any_moment_is_gone_on_with() {
-    kill(asked());
-}
-
-/// Takes minutes: `cargo test --release --test it -- --ignored kills`.
-#[test]
-#[ignore = "takes minutes"]
-fn fifty_kills_of_five_thousand_stages() {
-    kill((50, 5000));
-}
-
-fn kill((moments, stages): (usize, usize)) {
+    let (moments, stages) = asked();
     let text = study(stages);
     let home = disk::folder();
     let place = Place::new(home.path());

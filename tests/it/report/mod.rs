@@ -169,11 +169,11 @@ fn hostile_text_stays_text() {
     manifest.stages[0].warnings.push(HOSTILE.to_owned());
     manifest.stages[0].why = HOSTILE.to_owned();
     manifest.stages[0].left_out.push(OmissionRecord {
-        what: HOSTILE.to_owned(),
-        why: HOSTILE.to_owned(),
+        what: HOSTILE.into(),
+        why: HOSTILE.into(),
         saved_seconds: Some(1e-3),
     });
-    manifest.stages[0].work.insert(HOSTILE.to_owned(), 1);
+    manifest.stages[0].work.insert(HOSTILE.into(), 1);
     manifest.stages[3].tables[0].description = HOSTILE.into();
     std::sync::Arc::make_mut(&mut manifest.stages[3].tables[0].columns)[0].description = HOSTILE.to_owned();
     let Rendered { html, figures } = render(&manifest, &tables);

@@ -81,16 +81,16 @@ pub fn manifest(tables: &BTreeMap<String, Table>) -> Manifest {
         stage("report", "report", "ran", "input changed: ste", 0.002),
     ];
     stages[1].warnings.push(
-        "body compliance: the half tooth angle at the root θ_f = 0.1586 rad is outside the fitted range 0.01 to 0.12 rad".to_owned(),
+        "body compliance: the half tooth angle at the root θ_f = 0.1586 rad is outside the fitted range 0.01 to 0.12 rad".into(),
     );
     stages[1].left_out.push(OmissionRecord {
-        what: "slices along the face".to_owned(),
-        why: "nothing varies along it: one slice stands for all".to_owned(),
+        what: "slices along the face".into(),
+        why: "nothing varies along it: one slice stands for all".into(),
         saved_seconds: Some(0.014),
     });
     stages[3].left_out.push(OmissionRecord {
-        what: "contact before A and after E".to_owned(),
-        why: "the separation of 3.5 µm at 0.25 mm exceeds the deflection".to_owned(),
+        what: "contact before A and after E".into(),
+        why: "the separation of 3.5 µm at 0.25 mm exceeds the deflection".into(),
         saved_seconds: None,
     });
     Manifest {

@@ -16,13 +16,13 @@ use rayon::{ScopeFifo, ThreadPoolBuilder};
 use super::board::{Board, StageState, Step};
 use super::events::{Event, Observer, Silent};
 use super::fault::Fault;
-use super::graph::Graph;
 use super::note;
 use super::options::Options;
 use super::outcome::Outcome;
 use super::plan;
 use super::recall::{Part, Recalled};
 use super::work::{Ended, Run, message};
+use crate::stage::memory;
 use crate::store::cache::Cache;
 use crate::store::entry::StoredTable;
 use crate::store::error::StoreError;
@@ -76,18 +76,18 @@ pub fn run(
             folder.publish(outcome.manifest(study), facts, source)
         })
     };
-    let (mut outcome, mut graph) = executed(study, options, around)?;
+    let mut outcome = execute(study, cache, options, observer, stop)?;
     let mut published = publish(&outcome);
     if let Err(StoreError::Damaged { .. }) = published {
         // Plans look at headers only; a table that is found damaged now is forgotten, and computed again.
-        (outcome, graph) = executed(study, options, around)?;
+        outcome = execute(study, cache, options, observer, stop)?;
         published = publish(&outcome);
     }
     for message in &warnings(cache, &outcome) {
         observer.event(&Event::Warning { message });
     }
     let published = published?;
-    let recalled = || Recalled::of(study, &graph).map(Cow::Owned);
+    let recalled = || Recalled::of(study, options).map(Cow::Owned);
     note::keep(study, (cache, options, folder), (&outcome, &published), recalled, None);
     Ok((outcome, published))
 }
@@ -102,8 +102,8 @@ pub fn run_part(
     options: &Options,
     around: Surroundings<'_>,
 ) -> Result<Option<(Outcome, Published)>, RunError> {
-    let Surroundings { cache, observer, folder, .. } = around;
-    let (outcome, _) = executed(&part.study, &part.options, around)?;
+    let Surroundings { cache, observer, stop, folder, .. } = around;
+    let outcome = execute(&part.study, cache, &part.options, observer, stop)?;
     let of_part = results::Part {
         manifest: outcome.manifest(&part.study),
         stages: part.stages(),
@@ -193,17 +193,6 @@ pub fn execute(
     observer: &dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
-    let nowhere = Folder::new(Path::new(""), "");
-    let around = Surroundings { cache, observer, stop, folder: &nowhere, draw: None };
-    Ok(executed(study, options, around)?.0)
-}
-
-/// What came of a run, and its graph.
-fn executed(
-    study: &Study,
-    options: &Options,
-    Surroundings { cache, observer, stop, .. }: Surroundings<'_>,
-) -> Result<(Outcome, Graph), RunError> {
     let began = Instant::now();
     let mut board = Board::new(study, cache, options, &Silent)?;
     let queued = board.settle();
@@ -212,6 +201,8 @@ fn executed(
         if let Some(refused) = plan::of(&board, options).refused {
             return Err(RunError::Beyond(Box::new(refused)));
         }
+        // Of what the study's text took; threads have memory of their own.
+        memory::give_back();
         let threads = options.threads();
         let pool = ThreadPoolBuilder::new().num_threads(threads).thread_name(|index| format!("stage {index}")).build();
         let pool = pool.map_err(|error| RunError::Threads { threads, problem: error.to_string() })?;
@@ -239,8 +230,7 @@ fn executed(
         cache.put_journal(&study.name, &journal);
     }
     let stopped = stop.load(Ordering::Relaxed) && board.nodes.iter().any(|progress| progress.given_up);
-    let outcome = Outcome::of(&board, stopped, began.elapsed().as_secs_f64());
-    Ok((outcome, board.graph))
+    Ok(Outcome::of(&board, stopped, began.elapsed().as_secs_f64()))
 }
 
 impl Run<'_> {

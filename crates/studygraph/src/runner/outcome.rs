@@ -55,7 +55,7 @@ pub struct StageOutcome {
     /// Work that was counted then.
     pub work: Work,
     pub warnings: Vec<String>,
-    pub left_out: Vec<Omission>,
+    pub left_out: Arc<[Omission]>,
     pub keys: Vec<KeyRecord>,
     /// As the manifest keeps it.
     pub config: Config,
@@ -71,6 +71,15 @@ impl Outcome {
     /// What a board shows at the end.
     #[must_use]
     pub fn of(board: &Board, stopped: bool, seconds: f64) -> Self {
+        // Of thousands of stages of a kind the same is left out.
+        let mut last: Arc<[Omission]> = Arc::default();
+        let mut left_out = |node: usize| {
+            let found = left_out(board, node);
+            if *last != *found {
+                last = found.into();
+            }
+            Arc::clone(&last)
+        };
         let stages = board.graph.order.iter().map(|&node| {
             let (progress, of_study) = (&board.nodes[node], &board.study.nodes[node]);
             let fault = progress.fault.as_ref().map(|(_, fault)| fault.clone());
@@ -93,7 +102,7 @@ impl Outcome {
                 seconds: progress.seconds(),
                 work: progress.work(board.study.program.counters),
                 warnings: progress.warnings(|_| true),
-                left_out: left_out(board, node),
+                left_out: left_out(node),
                 keys: progress.parts.iter().map(|part| part.record.clone()).collect(),
                 config: Config::of(&Shown { fields: of_study.kind.fields, record: &of_study.record }),
                 tables: if progress.state.has_tables() { tables.collect() } else { Vec::new() },
@@ -213,8 +222,8 @@ impl StageOutcome {
     fn beyond_hdf5(&self) -> impl Iterator<Item = OmissionRecord> {
         let long = self.tables.iter().filter(|(_, table)| bundle::is_long(table.rows));
         long.map(|(_, table)| OmissionRecord {
-            what: format!("table `{}` in the HDF5 file", table.name),
-            why: format!("that file is made in memory; all {} rows are in the table's Parquet file", table.rows),
+            what: format!("table `{}` in the HDF5 file", table.name).into(),
+            why: format!("that file is made in memory; all {} rows are in the table's Parquet file", table.rows).into(),
             saved_seconds: None,
         })
     }

@@ -95,7 +95,8 @@ fn is_aligned(study: &Study, blocks: &Blocks, read: &[usize]) -> bool {
 impl Recalled {
     /// What is to be kept of a study that came to its end. None where its text is not plain.
     #[must_use]
-    pub fn of(study: &Study, graph: &Graph) -> Option<Self> {
+    pub fn of(study: &Study, options: &Options) -> Option<Self> {
+        let graph = Graph::new(study, &options.wanted).ok()?;
         let blocks = Blocks::cut(&study.text)?;
         let all: Vec<usize> = (0..blocks.stages.len()).collect();
         let nothing = |block: &Block| Recollection {
@@ -110,7 +111,7 @@ impl Recalled {
         let stages = blocks.stages.iter().map(nothing).collect();
         let known = places(&blocks).filter(|_| is_aligned(study, &blocks, &all))?;
         let nothing = Self { rest: rest(&blocks), kinds: Vec::new(), asked: Vec::new(), stages };
-        nothing.with(study, (&blocks, &known), graph, &all)
+        nothing.with(study, (&blocks, &known), &graph, &all)
     }
 
     /// The same with what is to be kept of the stages that were read.

@@ -3,13 +3,15 @@
 //! The time is counted work times what a unit takes, scaled by how long the work took that the stage did: right to a
 //! factor of two or three, which is all that anybody wants to know of it. Must not know: tables, the runner.
 
+use std::sync::Arc;
+
 use declare::work::{Counter, Work};
 
 /// Something that was not computed, and why.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Omission {
-    pub what: String,
-    pub why: String,
+    pub what: Arc<str>,
+    pub why: Arc<str>,
     /// None where nothing to speak of is saved, or nobody knows.
     pub saved: Option<Saved>,
 }
@@ -25,8 +27,8 @@ pub enum Saved {
 
 impl Omission {
     #[must_use]
-    pub fn new(what: impl Into<String>, why: impl Into<String>) -> Self {
-        Self { what: what.into(), why: why.into(), saved: None }
+    pub fn new(what: impl AsRef<str>, why: impl AsRef<str>) -> Self {
+        Self { what: what.as_ref().into(), why: why.as_ref().into(), saved: None }
     }
 
     #[must_use]
@@ -55,7 +57,7 @@ pub fn together(omissions: &[Omission]) -> Vec<Omission> {
     let mut found: Vec<Omission> = Vec::new();
     for omission in omissions {
         match found.last_mut().filter(|last| last.saved.is_none() && omission.saved.is_none()) {
-            Some(last) if last.why == omission.why => last.what += &format!(", {}", omission.what),
+            Some(last) if last.why == omission.why => last.what = format!("{}, {}", last.what, omission.what).into(),
             _ => found.push(omission.clone()),
         }
     }

@@ -151,8 +151,10 @@ pub struct StageRecord {
 
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
 pub struct OmissionRecord {
-    pub what: String,
-    pub why: String,
+    #[serde(with = "shared")]
+    pub what: Arc<str>,
+    #[serde(with = "shared")]
+    pub why: Arc<str>,
     /// About what it would have taken, where that is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub saved_seconds: Option<f64>,

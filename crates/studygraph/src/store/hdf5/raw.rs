@@ -9,6 +9,7 @@ use std::ptr;
 use hdf5_metno::sync::sync;
 use hdf5_metno::types::VarLenUnicode;
 use hdf5_metno::{Dataset, Datatype, File};
+use hdf5_metno_sys::h5::H5garbage_collect;
 use hdf5_metno_sys::h5d::H5Dwrite;
 use hdf5_metno_sys::h5f::{H5F_SCOPE_GLOBAL, H5Fflush, H5Fget_file_image};
 use hdf5_metno_sys::h5p::{H5P_CLS_DATASET_XFER, H5Pclose, H5Pcreate, H5Pset_buffer};
@@ -27,6 +28,8 @@ pub fn image(file: &File) -> hdf5_metno::Result<Vec<u8>> {
         if H5Fflush(id, H5F_SCOPE_GLOBAL) < 0 {
             return Err("the file in memory cannot be brought up to date".into());
         }
+        // Of many small pieces the library keeps as much as the file takes.
+        H5garbage_collect();
         let size = H5Fget_file_image(id, ptr::null_mut(), 0);
         let size = usize::try_from(size).map_err(|_| hdf5_metno::Error::from("the file in memory has no size"))?;
         let mut bytes = vec![0_u8; size];
