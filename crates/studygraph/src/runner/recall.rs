@@ -17,7 +17,7 @@ use super::options::{Options, Wanted};
 use crate::program::Program;
 use crate::stage::Want;
 use crate::study::blocks::{Block, Blocks, mentions};
-use crate::study::{Study, Unread, load_part, text_of};
+use crate::study::{MOST_VALUES, Study, Unread, load_part, text_of};
 use declare::digest::{Digest, Writer};
 
 /// What is kept of a study beside the note of a run.
@@ -26,6 +26,8 @@ pub struct Recalled {
     /// Of what stands in the text besides stages.
     #[serde(with = "crate::store::hexadecimal")]
     rest: Digest,
+    /// At least as many values as the text has.
+    values: usize,
     kinds: Vec<String>,
     /// What stages ask of others, each once.
     asked: Vec<Vec<Want>>,
@@ -110,7 +112,8 @@ impl Recalled {
         };
         let stages = blocks.stages.iter().map(nothing).collect();
         let known = places(&blocks).filter(|_| is_aligned(study, &blocks, &all))?;
-        let nothing = Self { rest: rest(&blocks), kinds: Vec::new(), asked: Vec::new(), stages };
+        let (rest, kinds, asked) = (rest(&blocks), Vec::new(), Vec::new());
+        let nothing = Self { rest, values: 0, kinds, asked, stages };
         nothing.with(study, (&blocks, &known), &graph, &all)
     }
 
@@ -122,6 +125,7 @@ impl Recalled {
         graph: &Graph,
         read: &[usize],
     ) -> Option<Self> {
+        self.values += study.values;
         let mut kinds: HashMap<String, u32> =
             (0..).zip(&self.kinds).map(|(place, kind)| (kind.clone(), place)).collect();
         let mut asked: HashMap<Vec<Want>, u32> =
@@ -240,7 +244,9 @@ pub fn part(at: &Where<'_>, program: &'static Program, options: &Options) -> Opt
         unread.push(Unread { name: stage.name.clone(), kind, after });
     }
     let study = load_part(&blocks, &read, unread, at.study, program)?;
-    if study.name != note.study || !is_aligned(&study, &blocks, &read) {
+    // That it is too much for a study is said of the whole.
+    let is_too_much = earlier.values + study.values > MOST_VALUES;
+    if is_too_much || study.name != note.study || !is_aligned(&study, &blocks, &read) {
         return None;
     }
     let options = earlier.asking(&read, options);

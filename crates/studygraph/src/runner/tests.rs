@@ -316,6 +316,7 @@ impl Bench {
             path: self.folder.path().join("study.yaml"),
             text: String::new(),
             nodes: specs.iter().map(node).collect(),
+            values: 0,
             unread: Vec::new(),
             program: self.program,
         }

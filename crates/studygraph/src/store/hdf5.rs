@@ -310,6 +310,38 @@ mod tests {
     }
 
     #[test]
+    fn other_numbers_are_the_file_that_has_them_from_the_first() {
+        let old = everything(300);
+        let other = |change: &dyn Fn(&mut Data)| {
+            let mut columns = old.columns().to_vec();
+            columns.iter_mut().for_each(change);
+            Table::from_columns(old.schema().clone(), columns).unwrap()
+        };
+        let numbers = other(&|data| match data {
+            Data::Float(values) => values[7] = -0.0,
+            Data::Integer(values) => values[299] += 1,
+            Data::Flag(values) => values[3] ^= true,
+            Data::Text(_) => {}
+        });
+        let name = || ("b".to_owned(), "curve".to_owned());
+        let beside = [("a", everything(3)), ("b", old.clone()), ("c", everything(70))];
+        let (_folder, path, bytes) = written(&beside);
+        let patch = |was: &Table, is: &Table| patched(&path, [(name(), was, is)].into_iter());
+        assert!(patch(&old, &old).unwrap() == bytes);
+        let beside = [("a", everything(3)), ("b", numbers.clone()), ("c", everything(70))];
+        assert!(patch(&old, &numbers).unwrap() == written(&beside).2 && written(&beside).2 != bytes);
+        let words = other(&|data| {
+            if let Data::Text(values) = data {
+                values[5] += "x";
+            }
+        });
+        assert!(patch(&old, &words).is_none(), "words lie elsewhere");
+        assert!(patch(&old, &everything(299)).is_none(), "another number of rows");
+        assert!(patch(&numbers, &old).is_none(), "what is there is not what was");
+        assert!(patched(&path, [(("b".to_owned(), "other".to_owned()), &old, &numbers)].into_iter()).is_none());
+    }
+
+    #[test]
     fn two_tables_of_one_stage_lie_side_by_side() {
         let mut schema = everything(0).schema().clone();
         schema.name = "summary".to_owned();

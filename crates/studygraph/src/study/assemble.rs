@@ -106,6 +106,7 @@ fn sound_tree(
     let help = "a study starts with `study: NAME` and `stages:`";
     let empty = || Diagnostic::new("the file is empty").at(start).help(help);
     let root = root.filter(|root| !root.is_null()).ok_or_else(empty)?;
+    let values = root.values();
     let root = files::expanded(with_what_is_set(root, program.kinds)?, text)?;
     let Content::Mapping(pairs) = &root.content else {
         let message = format!("a study is a mapping that starts with `study: NAME`, not {}", root.describe());
@@ -161,6 +162,7 @@ fn sound_tree(
         name: keys.text("study").to_owned(),
         nodes,
         unread: Vec::new(),
+        values,
         program,
     }))
 }

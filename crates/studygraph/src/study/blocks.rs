@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use std::hash::BuildHasher;
 use std::ops::Range;
 
-use super::document::{MOST_NODES, Shift};
+use super::document::Shift;
 
 /// The lines of one stage, and comments up to the next one.
 #[derive(Debug, PartialEq, Eq)]
@@ -39,7 +39,7 @@ impl<'a> Blocks<'a> {
     /// None where the text is not plain enough.
     #[must_use]
     pub fn cut(text: &'a str) -> Option<Self> {
-        if !is_plain(text.as_bytes()) || most_values(text.as_bytes()) > MOST_NODES {
+        if !is_plain(text.as_bytes()) {
             return None;
         }
         let mut stages: Vec<Block> = Vec::new();
@@ -152,16 +152,6 @@ fn is_plain(text: &[u8]) -> bool {
         _ => false,
     };
     text.iter().enumerate().filter(|(_, byte)| LOOKED_AT[usize::from(**byte)]).all(is_fine)
-}
-
-/// At most so many values are in a text: each has one of these characters before or behind it.
-fn most_values(text: &[u8]) -> usize {
-    let of_piece = |piece: &[u8]| -> usize {
-        let is_next = |byte: &u8| u8::from(matches!(byte, b':' | b',' | b'\n' | b'[' | b'{' | b'-'));
-        // So few that a byte has room for them: many are counted at once.
-        usize::from(piece.iter().map(is_next).fold(0, u8::wrapping_add))
-    };
-    text.chunks(255).map(of_piece).sum::<usize>() + 1
 }
 
 /// The stages of `known` that a text may speak of, each once, ascending: every word that is the name of one, be it meant so or

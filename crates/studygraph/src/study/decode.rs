@@ -123,7 +123,8 @@ impl<'a> Decoder<'a> {
         nodes: impl IntoIterator<Item = N>,
         mut read: impl FnMut(&mut Self, N) -> Result<T, Diagnostic>,
     ) -> Result<Vec<T>, Diagnostic> {
-        let (mut all, mut wrong) = (Vec::new(), Vec::new());
+        let nodes = nodes.into_iter();
+        let (mut all, mut wrong) = (Vec::with_capacity(nodes.size_hint().0), Vec::new());
         for node in nodes {
             match read(self, node) {
                 Ok(one) => all.push(one),

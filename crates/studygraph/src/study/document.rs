@@ -59,6 +59,15 @@ impl Node {
         matches!(self.content, Content::Mapping(_))
     }
 
+    /// How many values it is made of, keys among them.
+    pub fn values(&self) -> usize {
+        match &self.content {
+            Content::Scalar { .. } => 1,
+            Content::Sequence(items) => 1 + items.iter().map(Self::values).sum::<usize>(),
+            Content::Mapping(pairs) => 1 + pairs.iter().map(|pair| 1 + pair.node.values()).sum::<usize>(),
+        }
+    }
+
     /// What was found, for a message.
     pub fn describe(&self) -> String {
         match &self.content {

@@ -41,6 +41,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 pub use changes::{Changes, Refused, Settings};
+pub use document::MOST_NODES as MOST_VALUES;
 
 use crate::program::Program;
 use crate::stage::{Kind, Stage};
@@ -74,6 +75,8 @@ pub struct Study {
     pub tolerances: Vec<Allowance>,
     /// In the order of the file.
     pub nodes: Vec<Node>,
+    /// How many values were read.
+    pub values: usize,
     /// Stages of the file that were not read, since nothing is to be done with them; in the order of the file.
     pub unread: Vec<Unread>,
     /// Whose kinds of stages they are.

@@ -111,7 +111,7 @@ fn new_code_runs_again_and_stops_where_values_agree() {
 fn what_is_asked_for_goes_upstream_and_readers_of_less_do_not_notice() {
     let mut bench = Bench::new();
     let outcome = bench.run(&diamond());
-    let left_out: Vec<_> = outcome.stage("a").unwrap().left_out.iter().map(|omission| omission.what.as_str()).collect();
+    let left_out: Vec<_> = outcome.stage("a").unwrap().left_out.iter().map(|omission| &*omission.what).collect();
     assert_eq!(left_out, ["column `values.extra`", "table `detail`"]);
     // The user asks for a column of `a`: nobody below reads it.
     let want = Want { table: "values".to_owned(), columns: vec!["extra".to_owned()] };
@@ -144,7 +144,7 @@ fn a_port_for_a_column_on_demand_is_read_only_where_that_is_wanted() {
     let outcome = bench.run(&read_by("for_extra"));
     assert_eq!(bench.computed(), ["a", "b"]);
     assert_eq!(outcome.table(&bench.cache(), "b", "values").unwrap().floats("value"), [2.0], "nothing was read");
-    let left_out: Vec<_> = outcome.stage("a").unwrap().left_out.iter().map(|omission| omission.what.as_str()).collect();
+    let left_out: Vec<_> = outcome.stage("a").unwrap().left_out.iter().map(|omission| &*omission.what).collect();
     assert!(left_out.contains(&"table `detail`"), "{left_out:?}");
     let want = Want { table: "values".to_owned(), columns: vec!["extra".to_owned()] };
     bench.options.wanted = vec![Wanted { stage: "b".to_owned(), want }];

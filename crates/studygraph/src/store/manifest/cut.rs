@@ -152,3 +152,64 @@ fn join<'t>(text: &mut Vec<u8>, stages: impl Iterator<Item = &'t [u8]>) {
         text.extend_from_slice(stage);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::sample;
+    use super::*;
+
+    /// A manifest of several stages, as a text and cut.
+    fn stages(count: usize) -> Manifest {
+        let one = sample();
+        let stage = |number: usize| {
+            let mut stage = one.stages[0].clone();
+            stage.name = format!("m{number}");
+            stage
+        };
+        Manifest { stages: (0..count).map(stage).collect(), ..one }
+    }
+
+    #[test]
+    fn a_text_is_cut_at_its_stages() {
+        for count in 1..4 {
+            let manifest = stages(count);
+            let text = manifest.text().unwrap();
+            let cut = Cut::of(&text).unwrap();
+            assert_eq!(cut.len(), count);
+            assert_eq!(
+                cut.names().collect::<Vec<_>>(),
+                ["m0", "m1", "m2"][..count].iter().map(|name| name.as_bytes()).collect::<Vec<_>>()
+            );
+            assert!(cut.kinds().eq(manifest.stages.iter().map(|stage| stage.kind.as_str())));
+            let told = manifest.stages.iter().map(|stage| (!stage.warnings.is_empty(), stage.left_out.len()));
+            assert!(cut.told().eq(told));
+            assert_eq!(cut.read(0..count).unwrap(), manifest);
+            let last = Manifest { stages: vec![manifest.stages[count - 1].clone()], ..manifest.clone() };
+            assert_eq!(cut.read([count - 1].into_iter()).unwrap(), last);
+            assert!(cut.says(&last, &[count - 1]));
+        }
+        assert!(Cut::of(b"{}\n").is_none());
+        assert!(Cut::of(&stages(0).text().unwrap()).is_none());
+        let text = String::from_utf8(stages(2).text().unwrap()).unwrap();
+        let compact: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert!(Cut::of(compact.to_string().as_bytes()).is_none(), "of another program");
+        assert!(Cut::of(text.replace("\n   \"name\": \"m1\"", "\n   \"kind\": \"m1\"").as_bytes()).is_none());
+    }
+
+    #[test]
+    fn other_records_in_some_places_are_the_text_of_a_manifest_with_them() {
+        let manifest = stages(4);
+        let text = manifest.text().unwrap();
+        let cut = Cut::of(&text).unwrap();
+        let mut whole = Manifest { title: "another".to_owned(), ..manifest.clone() };
+        whole.files.truncate(1);
+        for place in [1, 3] {
+            whole.stages[place].why = "config changed".to_owned();
+        }
+        let own = Manifest { stages: [1, 3].map(|place| whole.stages[place].clone()).to_vec(), ..whole.clone() };
+        assert_eq!(cut.text_with(&own, &[1, 3]).unwrap().unwrap(), whole.text().unwrap());
+        assert!(cut.text_with(&own, &[1]).unwrap().is_none());
+        assert!(cut.text_with(&own, &[1, 7]).unwrap().is_none());
+        assert!(cut.says(&manifest, &[0, 1, 2, 3]) && !cut.says(&whole, &[0, 1, 2, 3]));
+    }
+}

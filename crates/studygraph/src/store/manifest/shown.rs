@@ -24,7 +24,9 @@ pub struct More {
 #[must_use]
 pub fn places(kinds: &[&str], reader: &str) -> Vec<usize> {
     let mut counts: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
-    kinds.iter().for_each(|kind| counts.entry(kind).or_default().0 += 1);
+    for kind in kinds {
+        counts.entry(kind).or_default().0 += 1;
+    }
     let is_all = counts.contains_key(reader);
     let mut is_shown = |kind: &str| {
         let Some((all, met)) = counts.get_mut(kind) else { return false };
@@ -91,5 +93,36 @@ impl StageRecord {
     /// Whether somebody is told of it.
     pub(in crate::store) fn is_told(&self) -> bool {
         !self.is_complete() || !self.warnings.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::sample;
+    use super::*;
+
+    #[test]
+    fn of_very_many_stages_the_first_ones_are_shown_and_those_that_are_told_of() {
+        let one = sample();
+        let stage = |number: usize| {
+            let mut stage = StageRecord { name: format!("m{number}"), ..one.stages[0].clone() };
+            if number != 20 {
+                stage.warnings.clear();
+            }
+            if number == 33 {
+                stage.status = "failed".to_owned();
+            }
+            stage
+        };
+        let all = Manifest { stages: (0..MANY + 8).map(stage).collect(), ..one.clone() };
+        let shown = all.shown("report");
+        let names: Vec<&str> = shown.stages.iter().map(|stage| stage.name.as_str()).collect();
+        assert_eq!(names, ["m0", "m1", "m2", "m3", "m4", "m5", "m6", "m7", "m20", "m33"]);
+        assert_eq!(shown.more, More { stages: [("ste".to_owned(), 30)].into(), omissions: 30 });
+        assert_eq!(Manifest { stages: all.stages.clone(), more: More::default(), ..shown.clone() }, all);
+        assert_eq!(shown.shown("report"), shown, "there is nothing more to leave out");
+        assert_eq!(all.shown("ste"), all, "a stage says what is shown");
+        let few = Manifest { stages: (0..MANY).map(stage).collect(), ..one };
+        assert_eq!(few.shown("report"), few);
     }
 }

@@ -32,6 +32,11 @@ fn first() -> String {
     digits.fold(text, |text, (digit, name)| text.replace(name, &format!("{digit}").repeat(64)))
 }
 
+/// A manifest with something in every field.
+pub(super) fn sample() -> Manifest {
+    Manifest { format: FORMAT, ..serde_json::from_str(&first()).unwrap() }
+}
+
 #[test]
 fn the_first_format_is_read_and_the_second_says_the_same() {
     let old: Manifest = serde_json::from_str(&first()).unwrap();

@@ -66,7 +66,11 @@ impl Folder {
         let Some(new) = taking_over(&old, new).filter(|_| cut.says(&old, &own)) else { return Ok(None) };
         let old = Known::as_indexed(self.clone(), old);
         let tables = self.to_be_written(&old.manifest, &new, source)?;
-        let Some(hdf5) = self.hdf5_with(&tables) else { return Ok(None) };
+        let needs_hdf5 = cfg!(feature = "hdf5") && !tables.is_empty();
+        let hdf5 = if needs_hdf5 { self.hdf5_with(&tables) } else { None };
+        if needs_hdf5 && hdf5.is_none() {
+            return Ok(None);
+        }
         let mut changes = Changes {
             manifest: true,
             tables: tables.iter().map(|change| change.record.file.clone()).collect(),
@@ -85,7 +89,7 @@ impl Folder {
         };
         let cut = Cut::of(&text).ok_or_else(|| damaged(&path))?;
         file::sweep(self.path());
-        let mut listed = self.put_changed(&old, tables, hdf5, source)?;
+        let mut listed = self.put_changed(&old, tables, hdf5.as_deref(), source)?;
         let Facts { program, study_folder, machine, written } = facts();
         let new = Manifest { program, study_folder, machine, written, files: Vec::new(), ..new };
         let shown = shown(&cut, &own, &new, part.reader).map_err(unwritten)?;
@@ -130,15 +134,18 @@ impl Folder {
         Ok(changes)
     }
 
-    /// The HDF5 file with what changed, none where nothing did; none at all where it must be made anew.
-    fn hdf5_with(&self, tables: &[Change]) -> Option<Option<Vec<u8>>> {
-        #[cfg(feature = "hdf5")]
-        if !tables.is_empty() {
-            let changed = |change: &'_ Change| (change.group.clone(), change.record.table().to_owned());
-            let tables = tables.iter().map(|change| (changed(change), &*change.old, &change.new));
-            return hdf5::patched(&self.path().join(self.hdf5_file()), tables).map(Some);
-        }
-        Some(None)
+    /// The HDF5 file with what changed; none where it must be made anew.
+    #[cfg(feature = "hdf5")]
+    fn hdf5_with(&self, tables: &[Change]) -> Option<Vec<u8>> {
+        let changed = |change: &'_ Change| (change.group.clone(), change.record.table().to_owned());
+        let tables = tables.iter().map(|change| (changed(change), &*change.old, &change.new));
+        hdf5::patched(&self.path().join(self.hdf5_file()), tables)
+    }
+
+    #[cfg(not(feature = "hdf5"))]
+    #[allow(clippy::unused_self)] // the same shape with and without the feature
+    fn hdf5_with(&self, _tables: &[Change]) -> Option<Vec<u8>> {
+        None
     }
 
     /// Writes what changed; lists what did not as it was, in the same order.
@@ -146,7 +153,7 @@ impl Folder {
         &self,
         old: &Known,
         tables: Vec<Change>,
-        hdf5: Option<Vec<u8>>,
+        hdf5: Option<&[u8]>,
         source: Source<'_>,
     ) -> Result<Listed, StoreError> {
         let mut listed = Listed::default();
@@ -154,7 +161,7 @@ impl Folder {
             tables.into_iter().map(|change| (change.record.file.clone(), change)).collect();
         let files = old.manifest.files.iter().map(|record| &record.file).filter(|file| !is_drawn(file));
         for file in files {
-            match (tables.remove(file), &hdf5) {
+            match (tables.remove(file), hdf5) {
                 (Some(Change { record, new, .. }), _) if is_bundle(file) => {
                     self.put(&mut listed, file, &parquet::write(&new)?, record.varies())?;
                     self.opened.put(file, new);
