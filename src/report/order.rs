@@ -50,7 +50,9 @@ impl Order {
             let mut rows: Vec<usize> = (0..table.rows()).collect();
             rows.sort_by_key(|&row| places[row]);
             let known = found.entry(key.name.clone()).or_default();
-            rows.into_iter().for_each(|row| known.add(&words[row]));
+            for row in rows {
+                known.add(&words[row]);
+            }
         }
         let found = found.into_iter().map(|(column, words)| (column, words.ordered)).collect();
         Self(found)
