@@ -4,24 +4,29 @@
 //! and programs differ to this day, so what only some of them take for the same number is refused, never guessed. Must not
 //! know: what a number is for.
 
+use super::quantity::interval::halves;
+use declare::units::split_quantity;
+
 /// Of a comma in a number.
 pub const COMMA: &str = "a decimal point, not a comma, and nothing parts thousands";
 
 /// What to write instead of a number with commas, which may stand for a point or part thousands: both where nothing tells, the
 /// one first that is nearer to what the field usually has, as `distance` says.
 pub fn without_commas(text: &str, distance: &dyn Fn(&str) -> f64) -> Option<String> {
-    let end = text.find(|c: char| !c.is_ascii_digit() && !"+-.,".contains(c)).unwrap_or(text.len());
-    let (number, rest) = text.split_at(end);
-    let groups: Vec<&str> = number.split(',').collect();
-    let (whole, others) = groups.split_first()?;
-    let is_group = |group: &&str| group.len() == 3 && group.bytes().all(|byte| byte.is_ascii_digit());
-    let starts_with_zero = whole.trim_start_matches(['+', '-']).starts_with('0');
-    let (last, inner) = others.split_last()?;
-    let last_group = last.split('.').next().unwrap_or(last);
-    let parts_thousands =
-        !starts_with_zero && !whole.contains('.') && inner.iter().all(is_group) && is_group(&last_group);
-    let thousands = parts_thousands.then(|| format!("{}{rest}", groups.concat()));
-    let point = (inner.is_empty() && !number.contains('.')).then(|| format!("{whole}.{last}{rest}"));
+    if !text.contains(',') {
+        return None;
+    }
+    let [point, thousands] = match halves(text) {
+        // Both numbers of an interval are written in one manner.
+        Some((before, behind)) => {
+            let [of_middle, of_half] = [before, behind].map(readings);
+            let both = |(middle, half): (Option<String>, Option<String>)| Some(format!("{} ± {}", middle?, half?));
+            let [middle, other_middle] = of_middle;
+            let [half, other_half] = of_half;
+            [both((middle, half)), both((other_middle, other_half))]
+        }
+        None => readings(text),
+    };
     Some(match (point, thousands) {
         (Some(point), Some(thousands)) if distance(&thousands) < distance(&point) => {
             format!("write `{thousands}`, or `{point}` if the comma is a decimal one")
@@ -29,6 +34,22 @@ pub fn without_commas(text: &str, distance: &dyn Fn(&str) -> f64) -> Option<Stri
         (Some(point), Some(thousands)) => format!("write `{point}`, or `{thousands}` if the comma parts thousands"),
         (point, thousands) => format!("write `{}`", point.or(thousands)?),
     })
+}
+
+/// A number with commas as points, and with none because they part thousands, each where it can be; one without is as it is.
+fn readings(text: &str) -> [Option<String>; 2] {
+    let end = text.find(|c: char| !c.is_ascii_digit() && !"+-.,".contains(c)).unwrap_or(text.len());
+    let (number, rest) = text.split_at(end);
+    let groups: Vec<&str> = number.split(',').collect();
+    let [whole, inner @ .., last] = &groups[..] else { return [(); 2].map(|()| Some(text.to_owned())) };
+    let is_group = |group: &&str| group.len() == 3 && group.bytes().all(|byte| byte.is_ascii_digit());
+    let starts_with_zero = whole.trim_start_matches(['+', '-']).starts_with('0');
+    let last_group = last.split('.').next().unwrap_or(last);
+    let parts_thousands =
+        !starts_with_zero && !whole.contains('.') && inner.iter().all(is_group) && is_group(&last_group);
+    let thousands = parts_thousands.then(|| format!("{}{rest}", groups.concat()));
+    let point = (inner.is_empty() && !number.contains('.')).then(|| format!("{whole}.{last}{rest}"));
+    [point, thousands]
 }
 
 /// A help of [`help`], and behind it what to write instead of a number with commas.
@@ -46,6 +67,9 @@ pub fn help(text: &str) -> Option<String> {
         Some(rest) => ("-", rest),
         None => ("", text.strip_prefix('+').unwrap_or(text)),
     };
+    if let Some(help) = with_brackets(text) {
+        return Some(help);
+    }
     let word = unsigned.split_whitespace().next().unwrap_or("");
     if let Some(value) = in_another_base(word) {
         return Some(format!("`{sign}{word}` in decimal digits is `{sign}{value}`"));
@@ -72,6 +96,22 @@ pub fn help(text: &str) -> Option<String> {
         return Some(format!("write `{sign}{zero}{}{rest}`, without zeros in front", short(plain)));
     }
     None
+}
+
+/// `14.079(1) mm`: digits in brackets are what the last ones may be off by, to those who write them.
+fn with_brackets(text: &str) -> Option<String> {
+    let (number, rest) = split_quantity(text);
+    let (digits, unit) = rest.strip_prefix('(')?.split_once(')')?;
+    let is_digits = (1..=9).contains(&digits.len()) && digits.bytes().all(|byte| byte.is_ascii_digit());
+    if !is_digits || number.is_empty() || number.contains(['e', 'E']) || text.contains(" (") {
+        return None;
+    }
+    let decimals = number.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let padded = format!("{digits:0>width$}", width = decimals + 1);
+    let (whole, fraction) = padded.split_at(padded.len() - decimals);
+    let half = if decimals == 0 { whole.to_owned() } else { format!("{whole}.{fraction}") };
+    let (single, interval) = (format!("{number} {}", unit.trim()), format!("{number} ± {half} {}", unit.trim()));
+    Some(format!("digits in brackets are not read: write `{}`, or as an interval `{}`", single.trim(), interval.trim()))
 }
 
 /// Whether a zero stands before another digit: eight times as much to some readers of YAML as to others.
@@ -102,12 +142,36 @@ mod tests {
             ("-007.5 mm", "write `-7.5 mm`, without zeros in front"),
             ("1_000 mm", "nothing parts thousands: write `1000 mm`"),
             ("1,5 mm", COMMA),
+            (
+                "14.079(1) mm",
+                "digits in brackets are not read: write `14.079 mm`, or as an interval `14.079 ± 0.001 mm`",
+            ),
+            ("-0.50(12)", "digits in brackets are not read: write `-0.50`, or as an interval `-0.50 ± 0.12`"),
+            ("19(1)", "digits in brackets are not read: write `19`, or as an interval `19 ± 1`"),
             ("1:30", "nothing is counted in sixties: write one number in decimal digits, `1.5` for `1:30`"),
         ] {
             assert_eq!(help(text).as_deref(), Some(says), "{text}");
         }
-        for text in ["0", "0.5", "-0.0", "30", "+30", ".5", "5.", "3e1", "0xyz", "19 mm", "", "-", "two", "µ_1", "0e5"]
-        {
+        for text in [
+            "0",
+            "0.5",
+            "-0.0",
+            "30",
+            "+30",
+            ".5",
+            "5.",
+            "3e1",
+            "0xyz",
+            "19 mm",
+            "",
+            "-",
+            "two",
+            "µ_1",
+            "0e5",
+            "3 (1/um^2)",
+            "3(1/um^2)",
+            "3 m(",
+        ] {
             assert_eq!(help(text), None, "{text}");
         }
     }
@@ -125,6 +189,9 @@ mod tests {
             ("-1,250", 1.0, "write `-1.250`, or `-1250` if the comma parts thousands"),
             ("1,234.5 mm", 1.0, "write `1234.5 mm`"),
             ("206,000,000 kPa", 1.0, "write `206000000 kPa`"),
+            ("14,079 ± 0,001 mm", 18.0, "write `14.079 ± 0.001 mm`"),
+            ("14.079+-0,001 mm", 18.0, "write `14.079 ± 0.001 mm`"),
+            ("14,079 ± 1 mm", 18.0, "write `14.079 ± 1 mm`, or `14079 ± 1 mm` if the comma parts thousands"),
         ] {
             assert_eq!(without_commas(text, &near(usual)).as_deref(), Some(says), "{text}");
         }

@@ -277,6 +277,11 @@ impl ReportEntry {
         })
     }
 
+    /// The published value, and how far a number may be off it; a claim has none.
+    pub fn aim(&self) -> Option<(f64, f64)> {
+        self.published.as_ref().map(|target| (target.stated.number, target.tolerance))
+    }
+
     /// Compares; `inside` is what its number is inside the intervals of its inputs.
     ///
     /// # Errors
@@ -319,8 +324,18 @@ impl ReportEntry {
         let has_reason = !self.because.is_empty();
         let is_claim = self.published.is_none();
         let range = inside.as_ref().and_then(Inside::ends);
-        let comparison =
-            Comparison { published, computed, range, tolerance, expected, has_reason, proof_holds, is_claim };
+        let is_broken = inside.as_ref().is_some_and(Inside::is_broken);
+        let comparison = Comparison {
+            published,
+            computed,
+            range,
+            is_broken,
+            tolerance,
+            expected,
+            has_reason,
+            proof_holds,
+            is_claim,
+        };
         let verdict = comparison.judge().map_err(Diagnostic::new)?;
         let found = match (is_claim, total > 1.0) {
             (false, _) => String::new(),

@@ -9,6 +9,7 @@
 
 use super::{MOST_AMOUNT, Modification};
 use crate::gear::geometry::Gear;
+use crate::gear::geometry::error::shown::decimals;
 use declare::error::Diagnostic;
 use declare::units::LENGTH;
 use declare::{Alternatives, Declared, Words};
@@ -349,8 +350,9 @@ impl TipPoint {
         let thickness = gear.tip_thickness();
         if amount > 0.5 * thickness {
             let (given, maximum) = (amount * 1e3, thickness * 0.5e3);
+            let digits = decimals(given, maximum);
             let message = format!(
-                "A is moved by {given:.6} mm along the tip circle; half of the tip leaves 0 to {maximum:.6} mm"
+                "A is moved by {given:.digits$} mm along the tip circle; half of the tip leaves 0 to {maximum:.digits$} mm"
             );
             return Err(Diagnostic::new(message).of(self.field()));
         }
@@ -367,8 +369,9 @@ impl FlankPoint {
         };
         if !(radius >= gear.form_radius && radius <= gear.tip_radius) {
             let [given, minimum, maximum] = [radius, gear.form_radius, gear.tip_radius].map(|radius| radius * 2e3);
+            let digits = decimals(given, minimum).max(decimals(given, maximum));
             let message = format!(
-                "the start diameter is {given:.6} mm; the involute has diameters of {minimum:.6} to {maximum:.6} mm"
+                "the start diameter is {given:.digits$} mm; the involute has diameters of {minimum:.digits$} to {maximum:.digits$} mm"
             );
             return Err(Diagnostic::new(message).of(self.field()));
         }

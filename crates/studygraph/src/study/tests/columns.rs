@@ -10,7 +10,7 @@ fn said(text: &str) -> Vec<String> {
         Content::Sequence(items) => format!("{:?}", items.iter().map(Node::describe).collect::<Vec<_>>()),
         Content::Mapping(_) => "a mapping".to_owned(),
     };
-    fields(text).unwrap().iter().map(|pair| format!("{}: {}", pair.key, shown(&pair.node))).collect()
+    fields(text).unwrap().0.iter().map(|pair| format!("{}: {}", pair.key, shown(&pair.node))).collect()
 }
 
 /// Line, column and what is said.
@@ -33,6 +33,16 @@ fn columns_are_lists_and_first_lines_are_values() {
         said("# at: [1 mm, 2 mm]\ny [um], y [um]\n1,3\n2,4\n")[1],
         "y: [\"`1 um`\", \"`2 um`\", \"`3 um`\", \"`4 um`\"]"
     );
+}
+
+#[test]
+fn a_list_stands_at_the_last_column_of_its_name() {
+    let (pairs, header) = fields("# one: 1\nx [mm], x [mm], y [um]\n4,5,-1\n").unwrap();
+    let at = |name: &str| {
+        pairs.iter().find(|pair| pair.key == name).map(|pair| (pair.node.place.line, pair.node.place.column))
+    };
+    assert_eq!((at("x"), at("y")), (Some((2, 9)), Some((2, 17))));
+    assert_eq!((header.line, header.column), (2, 1));
 }
 
 #[test]
