@@ -94,7 +94,8 @@ fn twice(name: &str) -> Diagnostic {
 
 fn other_count(cells: usize, columns: usize, separator: char) -> Diagnostic {
     let plural = |count: usize, word: &str| format!("{count} {word}{}", if count == 1 { "" } else { "s" });
-    let message = format!("this line has {}, and there are {}", plural(cells, "value"), plural(columns, "column"));
+    let are = if columns == 1 { "is" } else { "are" };
+    let message = format!("this line has {}, and there {are} {}", plural(cells, "value"), plural(columns, "column"));
     if separator == ',' && cells > columns {
         Diagnostic::new(message).help("with decimal commas, part columns by `;`")
     } else {

@@ -159,7 +159,8 @@ impl<'a> Decoder<'a> {
             (None, Presence::Required) => {
                 let expected = words::expected(&field.shape, words::example_of(field));
                 let message = format!("{} has no {}; {expected} is expected", owner.label, quote(field.name));
-                let place = owner.columns.filter(|_| matches!(field.shape, Shape::List(_))).unwrap_or(owner.place);
+                let is_column = matches!(field.shape, Shape::List(Shape::Quantity { .. } | Shape::Number { .. }));
+                let place = owner.columns.filter(|_| is_column).unwrap_or(owner.place);
                 Err(Diagnostic::new(message).at(place).help(field.summary))
             }
             (None, Presence::Default(text)) => {

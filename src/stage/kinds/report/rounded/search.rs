@@ -107,10 +107,10 @@ struct Peak {
     is_open: bool,
 }
 
-/// The way from the middle to a place, with what was published between the numbers at both of its ends.
+/// The way between two places, with what was published between their numbers.
 struct Way {
     goal: usize,
-    to: Place,
+    places: [Place; 2],
     ends: [(f64, f64); 2],
     gap: f64,
     is_open: bool,
@@ -356,20 +356,26 @@ impl Broken {
 }
 
 impl Way {
-    /// To the first place that has a number on the other side of what was published.
+    /// Between those two whose numbers are nearest to each other.
     fn of(goal: usize, state: &State) -> Option<Self> {
-        let own = state.goal.side(state.goal.stated);
-        let is_met = |(_, value): &(Place, f64)| state.goal.side(*value) == Ordering::Equal;
-        if state.is_between() != Some(true) || state.known.iter().any(is_met) {
+        let of = |wanted: Ordering| {
+            let middle = std::iter::once((vec![0.0; state.goal.inputs], state.goal.stated));
+            let all = middle.chain(state.known.iter().cloned());
+            all.filter(|(_, value)| state.goal.side(*value) == wanted).collect::<Vec<_>>()
+        };
+        if state.is_between() != Some(true) || !of(Ordering::Equal).is_empty() {
             return None;
         }
-        let (to, value) = state.known.iter().find(|(_, value)| state.goal.side(*value) != own)?;
-        let ends = [(0.0, state.goal.stated), (1.0, *value)];
-        Some(Self { goal, to: to.clone(), ends, gap: (ends[1].1 - ends[0].1).abs(), is_open: true })
+        let greater = |one: &(Place, f64), other: &(Place, f64)| one.1.total_cmp(&other.1);
+        let below = of(Ordering::Less).into_iter().max_by(greater)?;
+        let above = of(Ordering::Greater).into_iter().min_by(greater)?;
+        let (ends, gap) = ([(0.0, below.1), (1.0, above.1)], above.1 - below.1);
+        Some(Self { goal, places: [below.0, above.0], ends, gap, is_open: true })
     }
 
     fn at(&self, share: f64) -> Place {
-        self.to.iter().map(|place| share * place).collect()
+        let [from, to] = &self.places;
+        from.iter().zip(to).map(|(from, to)| from + share * (to - from)).collect()
     }
 
     /// The next place: half way, and every other time where a straight line is what was published.
@@ -410,7 +416,7 @@ fn meet(states: &mut [Option<State>], ask: Ask) -> Result<(), Failure> {
                 Ok(value) => {
                     state.learn(place.clone(), value);
                     let side = state.goal.side(value);
-                    way.ends[usize::from(side != state.goal.side(state.goal.stated))] = (share, value);
+                    way.ends[usize::from(side == Ordering::Greater)] = (share, value);
                     way.is_open = side != Ordering::Equal;
                 }
             }
