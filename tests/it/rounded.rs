@@ -10,6 +10,7 @@ use declare::digest::{Digest, Writer};
 use declare::record::varied::Varied;
 use gearstudy::program;
 use studygraph::study::Study;
+use studygraph::study::settings::Shown;
 use studygraph::table::data::Table;
 
 const PAIR: &str = "
@@ -255,6 +256,27 @@ fn an_alias_is_one_number_and_what_is_held_has_no_range() {
     for row in [1, 2] {
         assert!(said[row].contains("`sweep` is not computed anew"), "{}", said[row]);
     }
+}
+
+/// The manifest says of a report which inputs it took for intervals, as the study does, and of every other stage what it computes with.
+#[test]
+fn the_settings_of_a_report_have_the_intervals() {
+    let pair =
+        rounded().replace("bore_radius: 14.079 mm", "bore_radius: 14.079 mm ± 1 um").replace("20 deg", "20 ± 0.3 deg");
+    let study = load(&study(&[&pair], &row(DIAMETER, "57 mm")));
+    let settings = |name: &str| {
+        let node = study.nodes.iter().find(|node| node.name == name).unwrap();
+        serde_json::to_value(Shown { fields: node.kind.fields, record: &node.record }).unwrap()
+    };
+    let expected = serde_json::json!({
+        "pair.module": "3 ± 0.005 mm",
+        "pair.pinion.bore_radius": "14.079 ± 0.001 mm",
+        "pair.pinion.profile_shift": "0.21 ± 0.005",
+        "pair.pressure_angle": "20 ± 0.3 deg",
+    });
+    assert_eq!(settings("report")["intervals"], expected);
+    assert_eq!(settings("pair")["pinion"]["profile_shift"], 0.21);
+    assert_eq!(settings("pair").get("intervals"), None);
 }
 
 /// Fields of what is written once and used twice are found in both places; `set` and labels with dots lead there too.
