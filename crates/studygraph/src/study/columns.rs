@@ -63,7 +63,11 @@ pub fn fields(text: &str) -> Result<(Vec<KeyValue>, Place), Diagnostic> {
         let start = Place { line: 1, column: 1, ..Place::default() };
         return Err(Diagnostic::new("this file has no columns").at(start).help(HEADER));
     };
+    let said = pairs.len();
     for (column, (items, place)) in columns.iter().zip(lists) {
+        if pairs[..said].iter().any(|pair| pair.key == column.name.text) {
+            return Err(twice(column.name.text).at(place));
+        }
         match pairs.iter_mut().find(|pair| pair.key == column.name.text) {
             // Columns of one name are one list, which ends with the last of them.
             Some(KeyValue { node: Node { content: Content::Sequence(all), place: last }, .. }) => {

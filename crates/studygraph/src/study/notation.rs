@@ -4,7 +4,8 @@
 //! and programs differ to this day, so what only some of them take for the same number is refused, never guessed. Must not
 //! know: what a number is for.
 
-use super::quantity::interval::halves;
+pub use super::quantity::interval::without_sign;
+use super::quantity::interval::{halves, middle};
 use declare::units::split_quantity;
 
 /// Of a comma in a number.
@@ -12,6 +13,7 @@ pub const COMMA: &str = "a decimal point, not a comma, and nothing parts thousan
 
 /// What to write instead of a number with commas, which may stand for a point or part thousands: both where nothing tells, the
 /// one first that is nearer to what the field usually has, as `distance` says.
+#[must_use]
 pub fn without_commas(text: &str, distance: &dyn Fn(&str) -> f64) -> Option<String> {
     if !text.contains(',') {
         return None;
@@ -53,6 +55,7 @@ fn readings(text: &str) -> [Option<String>; 2] {
 }
 
 /// A help of [`help`], and behind it what to write instead of a number with commas.
+#[must_use]
 pub fn with_reading(help: String, text: &str, distance: &dyn Fn(&str) -> f64) -> String {
     match without_commas(text.trim(), distance) {
         Some(meant) => format!("{help}: {meant}"),
@@ -61,6 +64,7 @@ pub fn with_reading(help: String, text: &str, distance: &dyn Fn(&str) -> f64) ->
 }
 
 /// What to write instead of a text that is, or begins with, a number in another notation; nothing where it is not.
+#[must_use]
 pub fn help(text: &str) -> Option<String> {
     let text = text.trim();
     let (sign, unsigned) = match text.strip_prefix('-') {
@@ -100,6 +104,14 @@ pub fn help(text: &str) -> Option<String> {
 
 /// `14.079(1) mm`: digits in brackets are what the last ones may be off by, to those who write them.
 fn with_brackets(text: &str) -> Option<String> {
+    let [number, half] = in_brackets(text)?;
+    let (digits, unit) = split_quantity(&half);
+    let interval = format!("{} ± {digits} {unit}", split_quantity(&number).0);
+    Some(format!("digits in brackets are not read: write `{number}`, or as an interval `{}`", interval.trim()))
+}
+
+/// The number and what it may be off by, both with the unit.
+fn in_brackets(text: &str) -> Option<[String; 2]> {
     let (number, rest) = split_quantity(text);
     let (digits, unit) = rest.strip_prefix('(')?.split_once(')')?;
     let is_digits = (1..=9).contains(&digits.len()) && digits.bytes().all(|byte| byte.is_ascii_digit());
@@ -110,11 +122,24 @@ fn with_brackets(text: &str) -> Option<String> {
     let padded = format!("{digits:0>width$}", width = decimals + 1);
     let (whole, fraction) = padded.split_at(padded.len() - decimals);
     let half = if decimals == 0 { whole.to_owned() } else { format!("{whole}.{fraction}") };
-    let (single, interval) = (format!("{number} {}", unit.trim()), format!("{number} ± {half} {}", unit.trim()));
-    Some(format!("digits in brackets are not read: write `{}`, or as an interval `{}`", single.trim(), interval.trim()))
+    Some([number, &half].map(|number| format!("{number} {}", unit.trim()).trim_end().to_owned()))
+}
+
+/// The number and what it may be off by, where a text is an interval, and where one number alone can stand.
+#[must_use]
+pub fn halves_of(text: &str) -> Option<[String; 2]> {
+    if let Some(both) = in_brackets(text.trim()) {
+        return Some(both);
+    }
+    let bare = text.trim().strip_prefix('(').and_then(|text| text.split_once(')'));
+    let bare = bare.map_or_else(|| text.to_owned(), |(inside, unit)| format!("{inside} {unit}"));
+    let (before, half) = halves(&bare)?;
+    let (is_there, middle) = (!before.is_empty(), middle(&bare)?);
+    is_there.then(|| [middle, half.split_whitespace().collect::<Vec<_>>().join(" ")])
 }
 
 /// Whether a zero stands before another digit: eight times as much to some readers of YAML as to others.
+#[must_use]
 pub fn starts_with_zero(text: &str) -> bool {
     let digits = text.trim().trim_start_matches(['+', '-']).as_bytes();
     digits.first() == Some(&b'0') && digits.get(1).is_some_and(u8::is_ascii_digit)
@@ -174,6 +199,15 @@ mod tests {
         ] {
             assert_eq!(help(text), None, "{text}");
         }
+    }
+
+    #[test]
+    fn an_interval_where_one_number_is_meant_is_that_number_and_its_tolerance() {
+        for text in ["5.171 ± 0.001 mm", "(5.171 ± 0.001) mm", "5.171(1) mm"] {
+            assert_eq!(halves_of(text), Some(["5.171 mm".to_owned(), "0.001 mm".to_owned()]), "{text}");
+        }
+        assert_eq!(halves_of("5.171 mm ± 1 um"), Some(["5.171 mm".to_owned(), "1 um".to_owned()]));
+        assert!(["5.171 mm", "3 1/(um^2)", "1e+3", "5 N/(mm um)"].into_iter().all(|text| halves_of(text).is_none()));
     }
 
     #[test]

@@ -39,6 +39,16 @@ impl Gear {
         );
         let tip_radius =
             specification.tip_radius.unwrap_or(reference_radius + module * (rack.addendum + profile_shift));
+        let half_base_angle = (FRAC_PI_2 + 2.0 * generating_shift * libm::tan(pressure_angle)) / f64::from(teeth)
+            + involute(pressure_angle);
+        let least_shift =
+            -(FRAC_PI_2 + f64::from(teeth) * involute(pressure_angle)) / (2.0 * libm::tan(pressure_angle));
+        // Without an allowance that is what the profile shift must be above; with one it is rarely the rack that is wrong.
+        if half_base_angle <= 0.0 && specification.thickness_allowance < 0.0 {
+            let [allowance, minimum] =
+                [specification.thickness_allowance, specification.allowance_of(least_shift)].map(Millimetres);
+            return Err(Problem::NoTooth { allowance, minimum }.into());
+        }
         if root_radius <= 0.0
             && let Some(cutter) = specification.cutter
         {
@@ -57,21 +67,10 @@ impl Gear {
                 format!("below {} modules, where the root circle vanishes", beside(&largest, &own)),
             ));
         }
-        let half_base_angle = (FRAC_PI_2 + 2.0 * generating_shift * libm::tan(pressure_angle)) / f64::from(teeth)
-            + involute(pressure_angle);
         if half_base_angle <= 0.0 {
-            let at_reference = FRAC_PI_2 + f64::from(teeth) * involute(pressure_angle);
-            let minimum = -at_reference / (2.0 * libm::tan(pressure_angle));
-            // Without an allowance that is what the profile shift must be above.
-            return Err(if specification.thickness_allowance < 0.0 {
-                let [allowance, minimum] =
-                    [specification.thickness_allowance, specification.allowance_of(minimum)].map(Millimetres);
-                Problem::NoTooth { allowance, minimum }.into()
-            } else {
-                let [own, minimum] = [profile_shift, minimum].map(Plain);
-                let range = format!("above {} modules, where the tooth vanishes", beside(&minimum, &own));
-                out_of_range(Parameter::ProfileShift, beside(&own, &minimum), range)
-            });
+            let [own, minimum] = [profile_shift, least_shift].map(Plain);
+            let range = format!("above {} modules, where the tooth vanishes", beside(&minimum, &own));
+            return Err(out_of_range(Parameter::ProfileShift, beside(&own, &minimum), range));
         }
         let Generated { joint, .. } = Generated::new(specification, base_radius, half_base_angle)?;
         let mut gear = Self {

@@ -133,6 +133,10 @@ impl Measure<'_> {
             let message = format!("nothing stands {where_to} the sign of {shown}; {} is expected", self.expected());
             return Err(wrong(message).help("an interval is written `0.504 ± 0.0005`, or `5.05 ± 0.005 mm`"));
         }
+        if halves(behind).is_some() {
+            let message = format!("{shown} has more than one sign; {} is expected", self.expected());
+            return Err(wrong(message).help("an interval is written `0.504 ± 0.0005`, or `5.05 ± 0.005 mm`"));
+        }
         if let Some(help) = [before, behind].into_iter().find_map(notation::help) {
             return Err(other_notation().help(notation::with_reading(help, text, &|text| self.distance(text))));
         }
@@ -147,7 +151,7 @@ impl Measure<'_> {
         let own = middle(text).unwrap_or_default();
         let half = || width.single(&part(behind.to_owned()));
         // What is wrong with a unit behind both is told of what is written.
-        if own != before {
+        if own != before || split_quantity(behind).0.is_empty() {
             half()?;
         }
         let (middle, half) = (self.single(&part(own.clone()))?, half()?);

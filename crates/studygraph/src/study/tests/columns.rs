@@ -56,6 +56,7 @@ fn what_is_no_table_is_refused_at_its_line() {
     assert_eq!(refused("x [mm], y [um]\n4,1,-3,5\n"), "2:1: this line has 4 values, and there are 2 columns");
     assert_eq!(refused("x [mm]; y [um]\n4; \n"), "2:3: a value of `y` is missing");
     assert_eq!(refused("# x: 4\nx [mm]\n4\n"), "2:1: `x` stands here a second time");
+    assert_eq!(refused("# x: [4 mm]\nx [mm]\n4\n"), "2:1: `x` stands here a second time");
     assert_eq!(refused("# z:\nx [mm]\n4\n"), "1:3: `z` has no value");
     assert_eq!(refused("# z: [1\nx [mm]\n4\n"), "1:6: `[` is opened and never closed");
 }

@@ -110,6 +110,16 @@ const CHANGES: &[(&str, &str, &str)] = &[
         "module: 3.000 ± 1 um",
         "8:13: the unit of `3.000 ± 1 um` is that of both numbers, so `module` would be `3.000 um`\n  help: write `3.000 mm ± 1 um`, or `3.000 um ± 1 um` if it is",
     ),
+    (
+        "module: 3 mm",
+        "module: 3.000 ±± 1 um",
+        "8:13: `3.000 ±± 1 um` has more than one sign; a length (for example `3 mm`) is expected\n  help: an interval is written `0.504 ± 0.0005`, or `5.05 ± 0.005 mm`",
+    ),
+    (
+        "module: 3 mm",
+        "module: 3.000 ± some um",
+        "8:13: `some um` is not a number; a length (for example `3 mm`) is expected",
+    ),
     ("module: 3 mm", "module: 3.000 ± 1", "8:13: `3.000` has no unit; a length is expected, for example `3.000 mm`"),
     ("module: 3 mm", "module: 3.000 ± 1 deg", "8:13: `1 deg` is an angle; a length (for example `3 mm`) is expected"),
     (
