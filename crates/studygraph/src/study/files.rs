@@ -166,7 +166,7 @@ fn expand(node: &mut Node, held: &[KeyValue], whole: &str) -> Result<(), Diagnos
             });
             if let Some((at, file)) = file {
                 let (fields, header) = said_by(file, whole)?;
-                pairs[at].key = READ.to_owned();
+                READ.clone_into(&mut pairs[at].key);
                 pairs[at].node = nothing(header);
                 for field in fields {
                     if let Some(own) = pairs.iter().find(|pair| pair.key == field.key) {

@@ -241,8 +241,8 @@ pub enum Problem {
     #[error(
         "interference: the mate's tip ({}) would touch {}, below the form radius {}; the mate's tip radius must be at most {}",
         beside(.mate_tip, .largest),
-        .reached.beside(.form),
-        .reached.form(.form),
+        .reached.beside(*.form),
+        .reached.form(*.form),
         beside(.largest, .mate_tip)
     )]
     Interference {

@@ -15,16 +15,16 @@ pub enum Reached {
 
 impl Reached {
     /// Beside the form radius, which it is below.
-    pub(super) fn beside(&self, form: &Millimetres) -> String {
+    pub(super) fn beside(&self, form: Millimetres) -> String {
         match self {
-            Self::Radius(radius) => format!("at a radius of {}", beside(radius, form)),
+            Self::Radius(radius) => format!("at a radius of {}", beside(radius, &form)),
             Self::InsideBaseCircle => self.to_string(),
         }
     }
 
     /// The form radius beside it.
-    pub(super) fn form(&self, form: &Millimetres) -> String {
-        if let Self::Radius(radius) = self { beside(form, radius) } else { form.to_string() }
+    pub(super) fn form(&self, form: Millimetres) -> String {
+        if let Self::Radius(radius) = self { beside(&form, radius) } else { form.to_string() }
     }
 }
 
