@@ -356,7 +356,7 @@ impl Broken {
 }
 
 impl Way {
-    /// Between those two whose numbers are nearest to each other.
+    /// Between those two on whose way the fewest inputs move, and whose numbers are nearest to each other.
     fn of(goal: usize, state: &State) -> Option<Self> {
         let of = |wanted: Ordering| {
             let middle = std::iter::once((vec![0.0; state.goal.inputs], state.goal.stated));
@@ -366,11 +366,19 @@ impl Way {
         if state.is_between() != Some(true) || !of(Ordering::Equal).is_empty() {
             return None;
         }
-        let greater = |one: &(Place, f64), other: &(Place, f64)| one.1.total_cmp(&other.1);
-        let below = of(Ordering::Less).into_iter().max_by(greater)?;
-        let above = of(Ordering::Greater).into_iter().min_by(greater)?;
+        // How many inputs move on the way, and how far the numbers are apart.
+        let apart = |below: &(Place, f64), above: &(Place, f64)| {
+            let moved = below.0.iter().zip(&above.0).filter(|(one, other)| one.total_cmp(other).is_ne()).count();
+            (moved, above.1 - below.1)
+        };
+        let (lower, upper) = (of(Ordering::Less), of(Ordering::Greater));
+        let pairs = lower.iter().flat_map(|below| upper.iter().map(move |above| (below, above)));
+        let (below, above) = pairs.min_by(|one, other| {
+            let (one, other) = (apart(one.0, one.1), apart(other.0, other.1));
+            one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
+        })?;
         let (ends, gap) = ([(0.0, below.1), (1.0, above.1)], above.1 - below.1);
-        Some(Self { goal, places: [below.0, above.0], ends, gap, is_open: true })
+        Some(Self { goal, places: [below.0.clone(), above.0.clone()], ends, gap, is_open: true })
     }
 
     fn at(&self, share: f64) -> Place {
