@@ -116,18 +116,42 @@ pub fn rows(table: &Table) -> Result<Vec<Row>, ReportError> {
 
 /// A reason of more characters than this is not read twice.
 const LONG: usize = 60;
+/// What stands before each remark about rounded inputs.
+const REMARK: &str = " · ";
 
-/// Long reasons that rows of one verdict share stand at the first of them; the others name it. Rows of another verdict may be
-/// hidden.
+/// Long reasons that rows of one verdict share stand at the first of them, and so do long remarks about rounded inputs; the others name
+/// it. Rows of another verdict may be hidden.
 fn said_once(mut rows: Vec<Row>) -> Vec<Row> {
     let mut first: BTreeMap<(String, String), i64> = BTreeMap::new();
-    for row in rows.iter_mut().filter(|row| row.because.chars().count() > LONG) {
-        match first.entry((row.verdict.clone(), row.because.clone())) {
-            Entry::Occupied(known) => row.because = format!("for the reason of row {}", known.get()),
+    let mut known = |text: &str, verdict: &str, number: i64| {
+        if text.chars().count() <= LONG {
+            return None;
+        }
+        match first.entry((verdict.to_owned(), text.to_owned())) {
+            Entry::Occupied(known) => Some(*known.get()),
             Entry::Vacant(new) => {
-                new.insert(row.number);
+                new.insert(number);
+                None
             }
         }
+    };
+    for row in &mut rows {
+        if let Some(other) = known(&row.because, &row.verdict, row.number) {
+            row.because = format!("for the reason of row {other}");
+        }
+        let mut of_row: Vec<i64> = Vec::new();
+        let mut own: Vec<&str> = Vec::new();
+        for (at, remark) in row.rounding.split(REMARK).enumerate() {
+            // What comes first is of the row alone.
+            match if at == 0 { None } else { known(remark, &row.verdict, row.number) } {
+                Some(other) if other != row.number => of_row.push(other),
+                _ => own.push(remark),
+            }
+        }
+        of_row.dedup();
+        let others = of_row.iter().map(|other| format!("more as in row {other}"));
+        let all: Vec<String> = own.into_iter().map(str::to_owned).chain(others).collect();
+        row.rounding = all.join(REMARK);
     }
     rows
 }
@@ -249,5 +273,38 @@ mod tests {
         let said: Vec<String> = said_once(rows.to_vec()).into_iter().map(|row| row.because).collect();
         let shared = "for the reason of row 2";
         assert_eq!(said, [long, long, "rounded", shared, "rounded", shared]);
+    }
+
+    #[test]
+    fn a_long_remark_stands_at_the_first_row_of_a_verdict() {
+        let cut =
+            "searched only up to `pair.pinion.bore_radius` at 25.38 mm, above which there is no value: geometry: a; b";
+        let corner = "no value at 2 of 4 corners, for example: geometry: the bore radius is 26 mm, but must be below";
+        let held = "no range is known · inputs were printed rounded; `sweep` is not computed anew for them";
+        let row = |number: i64, verdict: &str, rounding: String| Row {
+            number,
+            verdict: verdict.to_owned(),
+            rounding,
+            ..Row::default()
+        };
+        let range = "1 to 2 mm over the rounded inputs; some value inside reproduces it";
+        let rows = [
+            row(1, "reproduced", format!("{range} · {cut} · {corner}")),
+            row(2, "reproduced", format!("3 to 4 mm over the rounded inputs; none found · {cut} · {corner}")),
+            row(3, "reproduced", format!("{range} · {corner}")),
+            row(4, "explained", format!("3 to 4 mm · {cut}")),
+            row(5, "explained", held.to_owned()),
+            row(6, "explained", held.to_owned()),
+            row(7, "explained", String::new()),
+        ];
+        let said: Vec<String> = said_once(rows.to_vec()).into_iter().map(|row| row.rounding).collect();
+        assert_eq!(said[0], rows[0].rounding);
+        assert_eq!(said[1], "3 to 4 mm over the rounded inputs; none found · more as in row 1");
+        assert_eq!(said[2], format!("{range} · more as in row 1"));
+        assert_eq!(said[3], rows[3].rounding, "rows of another verdict may be hidden");
+        assert_eq!(
+            (said[4].as_str(), said[5].as_str(), said[6].as_str()),
+            (held, "no range is known · more as in row 5", "")
+        );
     }
 }

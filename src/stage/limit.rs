@@ -2,6 +2,7 @@
 //!
 //! Must not know: where the numbers come from.
 
+use super::quantity::read;
 use declare::error::{Diagnostic, Place, suggest};
 use declare::units::{RATIO, parse_quantity};
 
@@ -45,7 +46,7 @@ impl<'t> Comparison<'t> {
     /// When it is none, or of another dimension.
     pub fn bound(&self, unit: &str) -> Result<[f64; 2], Diagnostic> {
         let quantity = self.quantity;
-        let bound = parse_quantity(quantity).map_err(|error| Diagnostic::new(format!("`{quantity}`: {error}")))?;
+        let bound = read(quantity).map_err(|error| Diagnostic::new(format!("`{quantity}`: {error}")))?;
         let one =
             parse_quantity(&format!("1 {unit}")).map_err(|error| Diagnostic::new(format!("`{unit}`: {error}")))?;
         if bound.dimension != one.dimension {

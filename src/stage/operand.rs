@@ -6,11 +6,12 @@ pub mod names;
 pub mod rows;
 
 use crate::stage::Inputs;
-use crate::stage::quantity::{Number, described};
+use crate::stage::quantity::{Number, described, read};
 use declare::declared::Placed;
 use declare::error::{Diagnostic, Place};
 use declare::number::{significant, with_unit};
 use declare::units::{UnitError, parse_quantity, split_quantity};
+use studygraph::study::notation;
 use studygraph::table::data::{Cell, Data, Table};
 use studygraph::table::select::{CellName, rows_where, unknown_column, why_none};
 
@@ -93,11 +94,13 @@ impl Operand {
 fn quantities(text: &str) -> Result<Vec<Number>, String> {
     let mut numbers: Vec<Number> = Vec::new();
     for item in text.split(',').map(str::trim) {
-        let quantity = parse_quantity(item).map_err(|error| format!("`{item}`: {error}"))?;
+        let quantity = read(item).map_err(|error| format!("`{item}`: {error}"))?;
         let number = Number { si: quantity.value, dimension: quantity.dimension };
         if let Some(first) = numbers.first().filter(|first| !first.fits(number)) {
             let (a, b) = (described(first.dimension), described(number.dimension));
-            return Err(format!("`{text}` lists {a} and {b}"));
+            let meant = notation::without_commas(text, &|_| 0.0).filter(|_| text.matches(',').count() == 1);
+            let comma = meant.map_or_else(String::new, |meant| format!("; with a decimal comma, {meant}"));
+            return Err(format!("`{text}` lists {a} and {b}{comma}"));
         }
         numbers.push(number);
     }

@@ -3,7 +3,10 @@
 //! Must not know: formulas. SI; an angle counts as a plain number.
 
 use declare::number::{significant, with_unit};
-use declare::units::{Dimension, FORCE, LENGTH, RATIO, STIFFNESS, STRESS, TORQUE, in_unit, parse_unit};
+use declare::units::{
+    Dimension, FORCE, LENGTH, Quantity, RATIO, STIFFNESS, STRESS, TORQUE, in_unit, parse_quantity, parse_unit,
+};
+use studygraph::study::notation;
 
 pub use declare::units::{described, same_dimension};
 
@@ -24,6 +27,23 @@ impl Number {
         let is_zero = |number: Self| number.si == 0.0 && number.dimension == RATIO;
         same_dimension(self.dimension, other.dimension) || is_zero(self) || is_zero(other)
     }
+}
+
+/// A quantity as a study writes it.
+///
+/// # Errors
+/// Why it is none, and what to write where it is a number in another notation.
+pub fn read(text: &str) -> Result<Quantity, String> {
+    if let Some([number, half]) = notation::halves_of(text) {
+        return Err(format!(
+            "one number is meant, and this is an interval: write `{number}`, and `{half}` as its tolerance"
+        ));
+    }
+    if let Some(help) = notation::help(text) {
+        let help = notation::with_reading(help, text, &|_| 0.0);
+        return Err(format!("not a number as a study has it: {help}"));
+    }
+    parse_quantity(text).map_err(|error| error.to_string())
 }
 
 /// The dimension of a sum, where a plain zero may stand for any.

@@ -3,11 +3,12 @@
 //! Must not know: what is compared with it.
 
 use super::operand::in_si;
-use super::quantity::{Number, described, same_dimension};
+use super::quantity::{Number, described, read, same_dimension};
 use declare::declared::Placed;
 use declare::error::{Diagnostic, Place};
 use declare::number::Printed;
-use declare::units::{Dimension, RATIO, in_unit, parse_quantity, split_quantity};
+use declare::units::{Dimension, RATIO, in_unit, split_quantity};
+use studygraph::study::notation::without_sign;
 
 /// A value as printed.
 pub struct Stated {
@@ -64,7 +65,7 @@ pub fn read_target(
 ) -> Result<Target, Diagnostic> {
     let wrong = |message: String| Diagnostic::new(message).at(value.place);
     let text = value.value.trim();
-    let quantity = parse_quantity(text).map_err(|error| wrong(format!("value `{text}`: {error}")))?;
+    let quantity = read(text).map_err(|error| wrong(format!("value `{text}`: {error}")))?;
     if let Some(wanted) = dimension.filter(|wanted| !same_dimension(*wanted, quantity.dimension)) {
         let (found, wanted) = (described(quantity.dimension), described(wanted));
         return Err(wrong(format!("`{text}` is {found}; the published value is {wanted}")));
@@ -84,11 +85,11 @@ fn read_tolerance(tolerance: &Placed<String>, stated: &Stated) -> Result<f64, Di
     const HELP: &str =
         "write `digits` (as far as the printed digits go), `1 %` (of the value), or a quantity in the value's unit";
     let wrong = |message: String| Diagnostic::new(message).at(tolerance.place).help(HELP);
-    let text = tolerance.value.trim();
+    let text = without_sign(&tolerance.value);
     if text == "digits" {
         return Ok(stated.printed.half_unit());
     }
-    let quantity = parse_quantity(text).map_err(|error| wrong(format!("tolerance `{text}`: {error}")))?;
+    let quantity = read(text).map_err(|error| wrong(format!("tolerance `{text}`: {error}")))?;
     if quantity.value < 0.0 {
         return Err(wrong(format!("the tolerance `{text}` is negative")));
     }

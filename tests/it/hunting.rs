@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 use std::fs;
+use std::ops::RangeInclusive;
 
+use studygraph::stage::{Ahead, Demand, RowCount};
 use studygraph::table::data::Table;
 
 use crate::desk::Desk;
@@ -205,4 +207,34 @@ fn any_number_of_threads_gives_the_same_curve() {
         desk.contents("t").into_iter().find(|(name, _)| name == "hunting.curve").unwrap().1
     });
     assert_eq!(curves[0], curves[1]);
+}
+
+/// Invariant: traces over all of the flank take a time for each slice and each tooth that has one, those across the face less, and
+/// those along the profile the same whatever the slices are.
+#[test]
+fn slices_are_foreseen_where_traces_go_across_the_face() {
+    let seconds = |places: &str, points: usize, teeth: RangeInclusive<usize>, slices: usize| {
+        let (single, numbers) = (vec!["1 um"; TEETH[0] as usize].join(", "), vec!["1 um"; points].join(", "));
+        let teeth = teeth.map(|tooth| tooth.to_string()).collect::<Vec<_>>().join(", ");
+        let flank = format!("{{ tooth: [{teeth}], {places}, deviations: [{numbers}] }}");
+        let text = with(&format!("slices: {slices}, pinion: {{ single: [{single}], flanks: [{flank}] }}"));
+        let study = load(&text);
+        let node = study.nodes.iter().find(|node| node.name == "hunting").unwrap();
+        let mut ahead = Ahead::default();
+        ahead.know("designs", "designs", RowCount::exact(1));
+        node.stage.estimate(&Demand::default(), &ahead).seconds
+    };
+    let (along, across) = ("roll_lengths: [4 mm, 10 mm, 17 mm]", "face_positions: [-9 mm, 0 mm, 9 mm]");
+    let both = format!("{along}, {across}");
+    let profile = seconds(along, 3, 1..=19, 17);
+    assert!(profile > 0.0 && profile.to_bits() == seconds(along, 3, 1..=19, 33).to_bits());
+    // Measured: 49 times as long as with traces along the profile with 17 slices, 15 with 5, and 7 with lines across the face under the
+    // contact that depends on the load.
+    let times =
+        |places: &str, points: usize, teeth: usize, slices: usize| seconds(places, points, 1..=teeth, slices) / profile;
+    let found = [times(&both, 9, 19, 17), times(&both, 9, 19, 5), times(across, 3, 19, 17)];
+    let measured = [49.0, 15.0, 7.0];
+    assert!(found.into_iter().zip(measured).all(|(found, of)| (0.8..1.25).contains(&(found / of))), "{found:?}");
+    let [one, all] = [1, 19].map(|teeth| times(&both, 9, teeth, 17) - 1.0);
+    assert!((all / one - 19.0).abs() < 1e-9, "{one} {all}");
 }

@@ -89,7 +89,10 @@ fn the_longest_relief_is_the_active_flank() {
     let found = ran(&[PAIR, DESIGNS, &limit("designs", vary, ""), &row]);
     let [lower, upper] = ends(&found, "length");
     is_at(&upper, longest, "modification: design `relieved`, tip_relief: the relief starts");
-    assert!(upper.1.unwrap().contains(&format!("the active flank is {longest:.6} mm long")));
+    // Told from what is refused, a share of 1e-12 beyond.
+    let said = upper.1.unwrap();
+    let flank = said.split_once("the active flank is ").unwrap().1.split_once(" mm long").unwrap().0;
+    assert!((flank.parse::<f64>().unwrap() / longest - 1.0).abs() < 1e-12, "{said}");
     assert_eq!(lower, (0.0, None));
     let verdicts = table(&found, "report", "verdicts");
     assert_eq!(verdicts.texts("verdict")[0], "reproduced", "{:?}", verdicts.floats("computed"));
@@ -248,4 +251,33 @@ fn a_sweep_is_refused_beyond_the_same_ends() {
         counts[usize::from(is_inside)] += 1;
     }
     assert!(counts[0] > 10 && counts[1] > 40, "{counts:?}");
+}
+
+/// Invariant: what is refused and what it must be are not the same text, a share of 1e-12 apart.
+#[test]
+fn a_reason_has_the_digits_that_tell_it_from_the_limit() {
+    let of_pair = "{ bore: { field: pair.pinion.bore_radius, from: 1 mm, to: 40 mm }, \
+        addendum: { field: pair.rack.addendum, from: 0.2, to: 2 }, tip: { field: pair.rack.tip_radius, from: 0, to: 1 } }";
+    let of_designs = "{ length: { field: \"designs.designs.relieved[0].tip_relief.length\", from: 1 mm, to: 40 mm }, \
+        amount: { field: \"designs.designs.relieved[0].tip_relief.amount\", from: 1 um, to: 4 mm } }";
+    let found = [ran(&[PAIR, &limit("pair", of_pair, "")]), ran(&[PAIR, DESIGNS, &limit("designs", of_designs, "")])];
+    let numbers = |reason: &str, before: &str| -> f64 {
+        let (_, rest) = reason.split_once(before).unwrap_or_else(|| panic!("{before} is not in: {reason}"));
+        let end = rest.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len());
+        rest[..end].trim_end_matches('.').parse().unwrap()
+    };
+    for (of, parameter, side, refused, must_be, is_below) in [
+        (0, "bore", 1, "bore radius is ", "root radius ", false),
+        (0, "addendum", 0, "contact ratio is ", "must be above ", true),
+        (0, "addendum", 1, "at a radius of ", "form radius ", true),
+        (0, "addendum", 1, "the mate's tip (", "must be at most ", false),
+        (0, "tip", 1, "tip radius is ", "0 to ", false),
+        (1, "length", 1, "relief starts ", "active flank is ", false),
+        (1, "amount", 1, "would lose ", "may take 0 to ", false),
+    ] {
+        let (_, reason) = &ends(&found[of], parameter)[side];
+        let reason = reason.as_deref().unwrap();
+        let [refused, must_be] = [numbers(reason, refused), numbers(reason, must_be)];
+        assert!(if is_below { refused < must_be } else { refused > must_be }, "{reason}");
+    }
 }

@@ -10,6 +10,7 @@ use declare::digest::{Digest, Writer};
 use declare::record::varied::Varied;
 use gearstudy::program;
 use studygraph::study::Study;
+use studygraph::study::settings::Shown;
 use studygraph::table::data::Table;
 
 const PAIR: &str = "
@@ -190,8 +191,32 @@ fn a_point_that_is_refused_is_said_in_its_row() {
     let table = verdicts(&found);
     assert_near(range(table, 0), [19.0 * 2.995, 19.0 * 3.005], "a diameter");
     let said = &table.texts("rounding")[0];
-    assert!(said.contains("some value inside reproduces it; no value at 3 of 8 points, "), "{said}");
-    assert!(said.contains("for example: with `pair.pinion.bore_radius` at its upper end, geometry: "), "{said}");
+    let cut = "some value inside reproduces it · searched only up to `pair.pinion.bore_radius` at 25.3";
+    assert!(said.contains(cut), "{said}");
+    assert!(said.contains(", above which there is no value: geometry: pinion: the bore radius is "), "{said}");
+}
+
+/// Tier: closed form; a formula with a pole at x = 0.2134 takes none of the values between those at the ends of 0.21 ± 0.005 and all
+/// beyond, and a refusal inside is approached.
+#[test]
+fn a_pole_between_the_ends_is_said_in_its_row() {
+    let pair = PAIR.replace("shift: 0.21", "shift: 0.21 ± 0.005");
+    let pole = |value: &str| {
+        format!(
+            "      - {{ formula: 1 / (x - 0.2134), with: {{ x: \"pair.gears[gear=pinion].profile_shift\" }}, value: \"{value}\" }}\n"
+        )
+    };
+    let found = ran(&[&pair], &["0.5", "-2000", "-294.1", "-100", "3000"].map(pole).concat());
+    let table = verdicts(&found);
+    assert_eq!(table.texts("verdict"), ["unexplained", "reproduced", "reproduced", "unexplained", "reproduced"]);
+    let said = table.texts("rounding");
+    for row in [0, 3] {
+        let there = "none found inside reproduces it · inside it is not finite, near what it is with `pair.pinion.profile_shift` at 0.213";
+        assert!(said[row].contains(there), "{}", said[row]);
+    }
+    assert!(
+        said[2].ends_with("; as stated they reproduce it") && said[1].ends_with("; some value inside reproduces it")
+    );
 }
 
 /// Tier: closed form; a saddle, on which each input alone changes nothing, has its range at the corners.
@@ -231,6 +256,27 @@ fn an_alias_is_one_number_and_what_is_held_has_no_range() {
     for row in [1, 2] {
         assert!(said[row].contains("`sweep` is not computed anew"), "{}", said[row]);
     }
+}
+
+/// The manifest says of a report which inputs it took for intervals, as the study does, and of every other stage what it computes with.
+#[test]
+fn the_settings_of_a_report_have_the_intervals() {
+    let pair =
+        rounded().replace("bore_radius: 14.079 mm", "bore_radius: 14.079 mm ± 1 um").replace("20 deg", "20 ± 0.3 deg");
+    let study = load(&study(&[&pair], &row(DIAMETER, "57 mm")));
+    let settings = |name: &str| {
+        let node = study.nodes.iter().find(|node| node.name == name).unwrap();
+        serde_json::to_value(Shown { fields: node.kind.fields, record: &node.record }).unwrap()
+    };
+    let expected = serde_json::json!({
+        "pair.module": "3 ± 0.005 mm",
+        "pair.pinion.bore_radius": "14.079 ± 0.001 mm",
+        "pair.pinion.profile_shift": "0.21 ± 0.005",
+        "pair.pressure_angle": "20 ± 0.3 deg",
+    });
+    assert_eq!(settings("report")["intervals"], expected);
+    assert_eq!(settings("pair")["pinion"]["profile_shift"], 0.21);
+    assert_eq!(settings("pair").get("intervals"), None);
 }
 
 /// Fields of what is written once and used twice are found in both places; `set` and labels with dots lead there too.

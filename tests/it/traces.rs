@@ -105,6 +105,18 @@ fn what_is_wrong_with_a_file_stands_in_it() {
     let without = |from: usize, to: usize| [&lines[..from], &lines[to..]].concat().join("\n");
     let other = |line: usize, text: &str| [&lines[..line], &[text], &lines[line + 1..]].concat().join("\n");
     let all = |from: &str, to: &str| good.replace(from, to);
+    // Some columns of it, with decimal points.
+    let columns = |wanted: &[usize]| {
+        let row = |line: &&str| {
+            let line = line.replace(',', ".");
+            if line.trim_start_matches('\u{feff}').starts_with('#') {
+                return line;
+            }
+            let cells: Vec<&str> = line.split(';').collect();
+            wanted.iter().map(|at| cells[*at].trim()).collect::<Vec<_>>().join("; ")
+        };
+        lines.iter().map(row).collect::<Vec<_>>().join("\n")
+    };
     let reversed = [&lines[..4], &lines[4..].iter().rev().copied().collect::<Vec<_>>()[..]].concat().join("\n");
     for (text, message) in [
         (without(20, 40), "21:1: there is a gap between points 16 and 17"),
@@ -115,6 +127,11 @@ fn what_is_wrong_with_a_file_stands_in_it() {
         (other(30, lines[29]), "31:1: point 27 of `roll_lengths` is the same as the one before it"),
         (all("# teeth: 19", "# teeth: 48"), "2:10: design `made`, measured: a gear of 48 teeth was measured"),
         (all("# module: 3 mm", "# module: 4 mm"), "3:11: design `made`, measured: a gear of module 4"),
+        // A column that is missing is missed where columns are named, one that is twice is told of where it is a second time.
+        (columns(&[0]), "4:1: `measured` has no `deviations`; a list is expected"),
+        (columns(&[1]), "4:1: nothing says where the deviations were measured"),
+        (columns(&[0, 0, 1]), "4:20: `roll_lengths` starts again at its point 61"),
+        (columns(&[0, 1, 1]), "4:37: there are 120 deviations for 60 `roll_lengths`"),
         (all("# teeth", "# teeht"), "2:3: unknown field `teeht` of `measured`"),
         (all("deviations [um]", "deviations [mm]"), "18:8: deviation 14 is -0.582"),
         (all("deviations [um]", "deviations [nm]"), "4:20: no deviation is larger than 1.2e-2 um"),

@@ -80,6 +80,9 @@ const MOST_POSITIONS: usize = 50_000_000;
 /// Time of a solve between flanks of single teeth over that of one between the design's: five where all teeth have some, little
 /// more than one where one has.
 const TRACED_SOLVES: f64 = 3.0;
+/// What a slice adds to that where all teeth of a gear have traces across the face alone, where no closed form passes the slices, and
+/// where they have traces over all of the flank.
+const SLICED_SOLVES: [f64; 2] = [0.35, 3.0];
 /// Base pitches that a thread takes at once.
 const AT_ONCE: usize = 64;
 
@@ -101,6 +104,19 @@ impl Stated {
 
     fn gears(&self) -> [Option<&StatedDeviations>; 2] {
         [self.pinion.as_ref(), self.gear.as_ref()]
+    }
+
+    /// How many times as long as usual a solve takes by the traces of single teeth, of gears of about so many.
+    fn traced_times(&self, teeth: [u32; 2]) -> f64 {
+        let (mut times, mut is_traced) = (1.0, false);
+        for (gear, teeth) in self.gears().into_iter().zip(teeth) {
+            let Some(gear) = gear else { continue };
+            is_traced |= gear.traces() > 0;
+            let share = |traces: usize| (traces as f64 / f64::from(teeth.max(1))).min(1.0);
+            let of_each = gear.traces_across().map(share).into_iter().zip(SLICED_SOLVES);
+            times += of_each.map(|(share, per_slice)| share * per_slice).sum::<f64>() * self.settings().slices as f64;
+        }
+        if is_traced { TRACED_SOLVES * times } else { 1.0 }
     }
 
     /// After how many base pitches everything is as before.
@@ -178,12 +194,13 @@ impl Stage for Stated {
         let curves = designs.times(RowCount::exact(self.torque.len()));
         // Nobody knows yet how many teeth there are but those that are stated: a usual ratio, and no common factor.
         let teeth = self.gears().map(|gear| gear.and_then(StatedDeviations::teeth).unwrap_or(0));
-        let period = hunting_period(match teeth.map(|teeth| u32::try_from(teeth).unwrap_or(u32::MAX)) {
+        let teeth = match teeth.map(|teeth| u32::try_from(teeth).unwrap_or(u32::MAX)) {
             [0, 0] => [30, 61],
             [pinion, 0] => [pinion, pinion.saturating_mul(2).saturating_add(1)],
             [0, gear] => [(gear / 2).saturating_sub(1), gear],
             both => both,
-        });
+        };
+        let period = hunting_period(teeth);
         let positions = curves.times(RowCount::about(period.saturating_mul(self.positions)));
         let orders = curves.times(RowCount::about(period.saturating_mul(self.harmonics)));
         // The curve that is worked on, and its transform.
@@ -192,7 +209,7 @@ impl Stage for Stated {
             |table: &str, rows: RowCount| if demand.table(table) { rows.count.saturating_mul(8) } else { 0 };
         let kept_bytes = kept_bytes(tables::CURVE, positions).saturating_add(kept_bytes(tables::SPECTRUM, orders));
         let traces: usize = self.gears().into_iter().flatten().map(StatedDeviations::traces).sum();
-        let times = common::solve_times(self.settings()) * if traces > 0 { TRACED_SOLVES } else { 1.0 };
+        let times = common::solve_times(self.settings()) * self.traced_times(teeth);
         Estimate::new(true)
             .work(&Work::of(&CONTACT_SOLVES, positions.index()), times)
             .holding(curve_bytes.saturating_add(kept_bytes))

@@ -3,13 +3,14 @@
 //! What is free, what is to be small and what must be kept, a registered problem says; with several objectives there is a
 //! front. Must not know: how any method searches, what any problem computes.
 
+use crate::stage::quantity::read;
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage};
 use declare::Declared;
 use declare::declared::{Declared, Placed};
 use declare::error::{Diagnostic, Failure, Faults};
 use declare::record::Record;
 use declare::seed::Seed;
-use declare::units::{Dimension, LENGTH, VOLUME, described, parse_quantity};
+use declare::units::{Dimension, LENGTH, VOLUME, described};
 use gearmesh::gear::problem::{Problem, Variable, Worth};
 use gearmesh::gear::sizing::{self, Objective};
 use gearmesh::optimize::bounds::Bounds;
@@ -109,7 +110,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
 fn limit(text: &Placed<String>, objective: Objective) -> Result<f64, Diagnostic> {
     let wrong =
         |why: String| Diagnostic::new(format!("`{}` of `{}`: {why}", text.value, objective.name)).at(text.place);
-    let quantity = parse_quantity(&text.value).map_err(|error| wrong(error.to_string()))?;
+    let quantity = read(&text.value).map_err(wrong)?;
     if quantity.dimension != objective.dimension || quantity.value <= 0.0 {
         return Err(wrong(format!("it must be {} above 0", described(objective.dimension))));
     }

@@ -23,13 +23,13 @@ struct Column<'a> {
     unit: Option<&'a str>,
 }
 
-/// The fields that the text says, in the order in which it does.
+/// The fields that the text says, in the order in which it does, and the line that names the columns.
 ///
 /// # Errors
 /// The first line that cannot be read.
-pub fn fields(text: &str) -> Result<Vec<KeyValue>, Diagnostic> {
+pub fn fields(text: &str) -> Result<(Vec<KeyValue>, Place), Diagnostic> {
     let mut pairs: Vec<KeyValue> = Vec::new();
-    let mut header: Option<(Vec<Column>, char)> = None;
+    let mut header: Option<(Vec<Column>, char, Place)> = None;
     let mut lists: Vec<(Vec<Node>, Place)> = Vec::new();
     let mut offset = 0;
     for (number, line) in (1..).zip(text.split('\n')) {
@@ -38,7 +38,7 @@ pub fn fields(text: &str) -> Result<Vec<KeyValue>, Diagnostic> {
         if let Some(said) = line.trim_start().strip_prefix('#') {
             pairs.extend(said_by(said, line, here)?);
         } else if line.trim().is_empty() {
-        } else if let Some((columns, separator)) = &header {
+        } else if let Some((columns, separator, _)) = &header {
             let cells = cells(line, *separator, here);
             if cells.len() != columns.len() {
                 return Err(other_count(cells.len(), columns.len(), *separator).at(here));
@@ -56,17 +56,24 @@ pub fn fields(text: &str) -> Result<Vec<KeyValue>, Diagnostic> {
             };
             let columns = cells(line, separator, here).into_iter().map(column).collect::<Result<Vec<_>, _>>()?;
             lists = columns.iter().map(|column| (Vec::new(), column.name.place)).collect();
-            header = Some((columns, separator));
+            header = Some((columns, separator, here));
         }
     }
-    let Some((columns, _)) = header else {
+    let Some((columns, _, header)) = header else {
         let start = Place { line: 1, column: 1, ..Place::default() };
         return Err(Diagnostic::new("this file has no columns").at(start).help(HEADER));
     };
+    let said = pairs.len();
     for (column, (items, place)) in columns.iter().zip(lists) {
+        if pairs[..said].iter().any(|pair| pair.key == column.name.text) {
+            return Err(twice(column.name.text).at(place));
+        }
         match pairs.iter_mut().find(|pair| pair.key == column.name.text) {
-            // Columns of one name are one list.
-            Some(KeyValue { node: Node { content: Content::Sequence(all), .. }, .. }) => all.extend(items),
+            // Columns of one name are one list, which ends with the last of them.
+            Some(KeyValue { node: Node { content: Content::Sequence(all), place: last }, .. }) => {
+                all.extend(items);
+                *last = place;
+            }
             Some(_) => return Err(twice(column.name.text).at(place)),
             None => pairs.push(KeyValue {
                 key: column.name.text.to_owned(),
@@ -80,7 +87,7 @@ pub fn fields(text: &str) -> Result<Vec<KeyValue>, Diagnostic> {
             return Err(twice(&pair.key).at(pair.place));
         }
     }
-    Ok(pairs)
+    Ok((pairs, header))
 }
 
 const HEADER: &str = "the first line names the columns and their units, such as `roll_lengths [mm], deviations [um]`";
@@ -91,7 +98,8 @@ fn twice(name: &str) -> Diagnostic {
 
 fn other_count(cells: usize, columns: usize, separator: char) -> Diagnostic {
     let plural = |count: usize, word: &str| format!("{count} {word}{}", if count == 1 { "" } else { "s" });
-    let message = format!("this line has {}, and there are {}", plural(cells, "value"), plural(columns, "column"));
+    let are = if columns == 1 { "is" } else { "are" };
+    let message = format!("this line has {}, and there {are} {}", plural(cells, "value"), plural(columns, "column"));
     if separator == ',' && cells > columns {
         Diagnostic::new(message).help("with decimal commas, part columns by `;`")
     } else {

@@ -4,6 +4,7 @@
 //! Names of stages are gathered and checked later, when all stages are known. Must not know: what any field means.
 
 use super::document::{Content, KeyValue, Node, nothing, parse};
+use super::files;
 use super::notation;
 use super::overrides::{self, Stages};
 use super::quantity::interval::Interval;
@@ -47,6 +48,8 @@ struct Owner<'a> {
     label: &'a str,
     /// Where it stands: the place of what is missing in it.
     place: Place,
+    /// Where the columns are named of a file that stands in it: the place of a list that is missing.
+    columns: Option<Place>,
 }
 
 impl<'a> Decoder<'a> {
@@ -67,12 +70,21 @@ impl<'a> Decoder<'a> {
         label: &str,
         place: Place,
     ) -> Result<Record, Diagnostic> {
-        let owner = Owner { label, place };
         let pairs = match &node.content {
             Content::Mapping(pairs) => pairs.as_slice(),
             // A member without its fields may be written `name:`.
             Content::Scalar { .. } if node.is_null() => &[],
             _ => return Err(not_fields(node, fields, others, label)),
+        };
+        let read = pairs.iter().position(files::is_read);
+        let owner = Owner { label, place, columns: read.map(|at| pairs[at].node.place) };
+        let without;
+        let pairs = match read {
+            Some(at) => {
+                without = [&pairs[..at], &pairs[at + 1..]].concat();
+                &without
+            }
+            None => pairs,
         };
         let is_known =
             |pair: &KeyValue| others.contains(&pair.key.as_str()) || fields.iter().any(|field| field.name == pair.key);
@@ -148,7 +160,9 @@ impl<'a> Decoder<'a> {
             (None, Presence::Required) => {
                 let expected = words::expected(&field.shape, words::example_of(field));
                 let message = format!("{} has no {}; {expected} is expected", owner.label, quote(field.name));
-                Err(Diagnostic::new(message).at(owner.place).help(field.summary))
+                let is_column = matches!(field.shape, Shape::List(Shape::Quantity { .. } | Shape::Number { .. }));
+                let place = owner.columns.filter(|_| is_column).unwrap_or(owner.place);
+                Err(Diagnostic::new(message).at(place).help(field.summary))
             }
             (None, Presence::Default(text)) => {
                 let node = parse(text)?.unwrap_or_else(|| nothing(owner.place)).moved_to(owner.place);

@@ -359,6 +359,10 @@ impl<'a> Tree<'a> {
             ErrorKind::DirectiveDisallowed => {
                 Diagnostic::new("YAML directives (`%…`) have no meaning in a study").at(place)
             }
+            ErrorKind::UnknownQuotedScalarEscape => {
+                let message = "a `\\` in double quotes begins an escape, and there is none of this letter";
+                Diagnostic::new(message).at(place).help("write the text in single quotes, or without any")
+            }
             ErrorKind::MappingValueNotAllowed => Diagnostic::new("a `:` cannot stand here").at(place).help(quotes),
             ErrorKind::UnexpectedCharacter { character } => {
                 let shown = quote(&character.to_string());

@@ -9,12 +9,14 @@ use std::path::{Component, Path, PathBuf};
 use super::assemble::{FILES, SET};
 use super::changes::behind;
 use super::columns;
-use super::document::{Content, KeyValue, Node};
+use super::document::{Content, KeyValue, Node, nothing};
 use super::words::quote;
 use super::{LoadError, read};
 use declare::error::{Diagnostic, Place};
 use declare::parameter::FILE;
 
+/// The key under which the line that names the columns of a file stands where the file was named: no study can write it.
+const READ: &str = "\0";
 /// Columns by which a file's lines are set in below its name.
 const INDENT: usize = 2;
 
@@ -42,6 +44,11 @@ impl Attached {
         let place = Place { line, column, offset: before + inside, ..place };
         Some(LoadError::new(&self.path, self.text.clone(), wrong.clone().at(place)))
     }
+}
+
+/// Whether this is what is left of the name of a file that has been put in its place.
+pub(super) fn is_read(pair: &KeyValue) -> bool {
+    pair.key == READ
 }
 
 /// The names of the files that a study says its stages have, where each stands first.
@@ -158,8 +165,10 @@ fn expand(node: &mut Node, held: &[KeyValue], whole: &str) -> Result<(), Diagnos
                 _ => None,
             });
             if let Some((at, file)) = file {
-                pairs.remove(at);
-                for field in said_by(file, whole)? {
+                let (fields, header) = said_by(file, whole)?;
+                READ.clone_into(&mut pairs[at].key);
+                pairs[at].node = nothing(header);
+                for field in fields {
                     if let Some(own) = pairs.iter().find(|pair| pair.key == field.key) {
                         let message =
                             format!("{} stands in the study too, in line {}", quote(&field.key), own.place.line);
@@ -173,15 +182,15 @@ fn expand(node: &mut Node, held: &[KeyValue], whole: &str) -> Result<(), Diagnos
     }
 }
 
-/// The fields of a file, with their places in the whole text.
-fn said_by(file: &KeyValue, whole: &str) -> Result<Vec<KeyValue>, Diagnostic> {
+/// The fields of a file, and the line that names its columns, with their places in the whole text.
+fn said_by(file: &KeyValue, whole: &str) -> Result<(Vec<KeyValue>, Place), Diagnostic> {
     let Content::Scalar { text, .. } = &file.node.content else {
         let message = format!("{} is {}; the text of a file is expected", quote(&file.key), file.node.describe());
         return Err(Diagnostic::new(message).at(file.node.place).help("write it line by line behind `|`"));
     };
     let block = Block::of(file, text, whole);
     let at = |place: Place| block.as_ref().map_or(file.node.place, |block| block.place(place));
-    let mut fields = columns::fields(text.trim_end_matches('\n')).map_err(|found| match found.place {
+    let (mut fields, header) = columns::fields(text.trim_end_matches('\n')).map_err(|found| match found.place {
         Some(place) => found.at(at(place)),
         None => found.at(file.node.place),
     })?;
@@ -189,7 +198,7 @@ fn said_by(file: &KeyValue, whole: &str) -> Result<Vec<KeyValue>, Diagnostic> {
         field.place = at(field.place);
         move_all(&mut field.node, &at);
     }
-    Ok(fields)
+    Ok((fields, at(header)))
 }
 
 fn move_all(node: &mut Node, at: &dyn Fn(Place) -> Place) {

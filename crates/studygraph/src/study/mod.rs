@@ -20,7 +20,7 @@ mod files;
 mod intervals;
 mod links;
 pub mod named;
-mod notation;
+pub mod notation;
 mod overrides;
 pub mod path;
 mod place;

@@ -4,6 +4,7 @@
 //! not know: what any field means.
 
 use super::document::{Content, KeyValue, Node};
+use super::files;
 use super::words::quote;
 use crate::program::Foreign;
 use crate::stage::Kind;
@@ -88,7 +89,8 @@ pub fn written(pairs: &[KeyValue]) -> String {
 }
 
 fn fields(pairs: &[KeyValue]) -> String {
-    pairs.iter().map(|pair| format!("{}: {}", pair.key, inline(&pair.node))).collect::<Vec<_>>().join(", ")
+    let own = pairs.iter().filter(|pair| !files::is_read(pair));
+    own.map(|pair| format!("{}: {}", pair.key, inline(&pair.node))).collect::<Vec<_>>().join(", ")
 }
 
 fn inline(node: &Node) -> String {

@@ -169,8 +169,10 @@ impl<'a> Measure<'a> {
         }
     }
 
-    /// How far a number is from the usual one, as the logarithm of their ratio: without end where it cannot stand here.
+    /// How far a number, or the middle of an interval, is from the usual one, as the logarithm of their ratio: without end where it cannot stand here.
     pub fn distance(&self, text: &str) -> f64 {
+        let middle = interval::middle(text);
+        let text = middle.as_deref().unwrap_or(text);
         let si = |text: &str| {
             parse_quantity(text).ok().filter(|read| self.dimension.is_none_or(|own| own == read.dimension))
         };

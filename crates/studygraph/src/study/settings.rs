@@ -7,7 +7,7 @@ use serde_json::{Value as Json, json};
 
 use super::words;
 use declare::parameter::{Field, Shape};
-use declare::record::varied::{Axis, Form, Spread, Values};
+use declare::record::varied::{Axis, Form, INTERVALS, Spread, Values, Varied};
 use declare::record::{Record, Value};
 use declare::units::{RATIO, in_unit};
 
@@ -25,12 +25,38 @@ struct Number<'a>(&'a Shape, f64);
 
 impl Serialize for Shown<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let fields = self.fields.iter();
-        serializer.collect_map(fields.filter_map(|field| {
+        let fields = self.fields.iter().filter_map(|field| {
             let entry = self.record.entry(field.name)?;
-            Some((field.name, Member(&field.shape, &entry.value)))
-        }))
+            Some((field.name, Entry::Of(&field.shape, &entry.value)))
+        });
+        // What it knows of the inputs of others, beside its own.
+        let intervals = Varied::intervals(self.record).map(|varied| (INTERVALS, Entry::Intervals(varied)));
+        serializer.collect_map(fields.chain(intervals))
     }
+}
+
+/// What stands behind a name.
+enum Entry<'a> {
+    Of(&'a Shape, &'a Value),
+    Intervals(&'a Varied),
+}
+
+impl Serialize for Entry<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Of(shape, value) => Member(shape, value).serialize(serializer),
+            Self::Intervals(varied) => {
+                serializer.collect_map(varied.axes.iter().filter_map(|axis| Some((&axis.path, interval(axis)?))))
+            }
+        }
+    }
+}
+
+/// As a study has it, `0.504 ± 0.0005`.
+fn interval(axis: &Axis) -> Option<String> {
+    let Values::Spread(Spread { form: Form::Within(half, _), about, .. }) = &axis.values else { return None };
+    let number = |si: f64| words::number(if axis.unit.is_empty() { si } else { in_unit(si, &axis.unit) });
+    Some(format!("{} ± {} {}", number(*about), number(*half), axis.unit).trim_end().to_owned())
 }
 
 impl Serialize for Number<'_> {

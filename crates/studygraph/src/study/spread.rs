@@ -7,8 +7,8 @@
 use super::decode::scalar;
 use super::document::{Content, KeyValue, Node};
 use super::quantity::Measure;
-use super::quantity::interval::without_sign;
-use super::words::quote;
+use super::quantity::interval::{halves, without_sign};
+use super::words::{number, quote};
 use declare::error::{Diagnostic, Place, suggest};
 use declare::parameter::Shape;
 use declare::record::varied::{Form, Spread, Within};
@@ -82,7 +82,7 @@ impl Stated<'_> {
         };
         let middle = self.measure.single(&about).map_err(|wrong| wrong.or_at(place))?;
         let form = match kind {
-            "within" => Form::Within(self.width(place)?, self.shape()?),
+            "within" => Form::Within(self.width(place, middle)?, self.shape()?),
             "iso1328" => Form::Class(self.class(place)?, self.shape()?),
             "normal" => Form::Normal(self.width_of("normal", place)?),
             _ => {
@@ -133,8 +133,26 @@ impl Stated<'_> {
         }
     }
 
-    /// Of `within`, with or without its sign.
-    fn width(&self, place: Place) -> Result<f64, Diagnostic> {
+    /// Of `within`, with or without its sign, about a middle.
+    fn width(&self, place: Place, middle: f64) -> Result<f64, Diagnostic> {
+        let Some(Node { content: Content::Scalar { text, .. }, place: own }) = self.given("within") else {
+            return self.width_of("within", place);
+        };
+        if let Some((mean, half)) = halves(text).filter(|(mean, half)| !mean.is_empty() && !half.is_empty()) {
+            let message = format!("{} is an interval, and `within` is half of its width alone", quote(text));
+            return Err(Diagnostic::new(message).at(*own).help(format!("write `mean: {mean}, within: ± {half}`")));
+        }
+        let (share, unit) = split_quantity(without_sign(text));
+        if unit == "%"
+            && self.measure.dimension.is_none()
+            && let Ok(share) = share.parse::<f64>()
+        {
+            let [of_it, of_one] = [middle.abs(), 1.0].map(|of| number(of * share / 100.0));
+            let message = format!("{} can be read in two ways; {} is a plain number", quote(text), quote(self.name));
+            let help =
+                format!("write `± {of_it}` for {share} % of {}, `± {of_one}` for {share} % of 1", number(middle));
+            return Err(Diagnostic::new(message).at(*own).help(help));
+        }
         self.width_of("within", place)
     }
 

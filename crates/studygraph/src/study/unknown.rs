@@ -4,6 +4,7 @@
 
 use super::document::{Content, KeyValue};
 use super::notation;
+use super::quantity::interval::halves;
 use super::words::quote;
 use crate::program::Foreign;
 use declare::error::{Diagnostic, Place, suggest};
@@ -70,6 +71,13 @@ fn elsewhere(word: &str, foreign: &[Foreign]) -> Option<String> {
     Some(format!("a study calls it `{field}`, in another place"))
 }
 
+/// Whether this can stand behind the digits of a number: nothing, its unit, or the other half of an interval.
+fn is_number_s(rest: &str) -> bool {
+    rest.is_empty()
+        || rest.starts_with(char::is_whitespace)
+        || halves(rest).is_some_and(|(before, _)| before.is_empty())
+}
+
 /// `{ amount: 0,012 mm }` is `amount: 0` and a key `012 mm` to YAML. How many keys are parts of the number is told with it.
 fn with_commas(
     before: &KeyValue,
@@ -78,20 +86,25 @@ fn with_commas(
 ) -> Option<(Diagnostic, usize)> {
     let Content::Scalar { text: whole, quoted: false } = &before.node.content else { return None };
     let is_digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-    if !is_digits(whole.trim_start_matches(['+', '-'])) {
+    // Behind the last sign of an interval a number may go on, as behind nothing but digits.
+    let is_open = |text: &str| {
+        let last = halves(text).map_or(text, |(_, behind)| behind);
+        is_digits(last.trim_start_matches(['+', '-']))
+    };
+    if !is_open(whole) {
         return None;
     }
     let (mut text, mut length, mut keys) = (whole.clone(), before.node.place.length, 0);
     for part in rest {
-        let fraction = part.key.split_whitespace().next().unwrap_or_default();
+        let digits = part.key.find(|c: char| !c.is_ascii_digit()).unwrap_or(part.key.len());
         let follows = part.place.offset == before.node.place.offset + length + 1;
-        if !follows || !part.node.is_null() || !is_digits(fraction) {
+        if !follows || !part.node.is_null() || digits == 0 || !is_number_s(&part.key[digits..]) {
             break;
         }
         text += &format!(",{}", part.key);
         // Behind a unit comes another field.
-        let ends = fraction != part.key;
-        length += 1 + if ends { fraction.len() } else { part.place.length };
+        let ends = !is_open(&part.key);
+        length += 1 + if ends { digits } else { part.place.length };
         keys += 1;
         if ends {
             break;

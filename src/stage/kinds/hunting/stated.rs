@@ -152,7 +152,23 @@ impl StatedDeviations {
 
     /// How many traces of teeth there are.
     pub fn traces(&self) -> usize {
-        self.flanks.iter().flatten().map(|traced| traced.stated.tooth.len()).sum()
+        self.counted(|_| true)
+    }
+
+    /// How many of them go across the face alone, and over all of the flank.
+    pub fn traces_across(&self) -> [usize; 2] {
+        [false, true].map(|along| {
+            self.counted(|trace| {
+                let goes_along =
+                    trace.roll_lengths.is_some() || trace.roll_angles.is_some() || trace.diameters.is_some();
+                trace.face_positions.is_some() && goes_along == along
+            })
+        })
+    }
+
+    fn counted(&self, is: impl Fn(&Measured) -> bool) -> usize {
+        let flanks = self.flanks.iter().flatten().filter(|traced| is(&traced.stated.trace));
+        flanks.map(|traced| traced.stated.tooth.len()).sum()
     }
 }
 

@@ -5,12 +5,13 @@
 use crate::stage::Inputs;
 use crate::stage::operand::Operand;
 use crate::stage::operand::rows::OperandRows;
-use crate::stage::quantity::{Number, described, same_dimension};
+use crate::stage::quantity::{Number, described, read, same_dimension};
 use declare::Declared;
 use declare::declared::Placed;
 use declare::error::{Diagnostic, Place};
 use declare::record::Record;
-use declare::units::{Dimension, RATIO, in_unit, parse_quantity};
+use declare::units::{Dimension, RATIO, in_unit};
+use studygraph::study::notation::without_sign;
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
 
@@ -174,9 +175,9 @@ impl Comparison {
 
 fn read_tolerance(Placed { value, place }: &Placed<String>) -> Result<Tolerance, Diagnostic> {
     const HELP: &str = "write `1 %` (of `against`), or a quantity in its unit";
-    let text = value.trim();
+    let text = without_sign(value);
     let wrong = |message: String| Diagnostic::new(message).at(*place).help(HELP);
-    let quantity = parse_quantity(text).map_err(|error| wrong(format!("tolerance `{text}`: {error}")))?;
+    let quantity = read(text).map_err(|error| wrong(format!("tolerance `{text}`: {error}")))?;
     if quantity.value < 0.0 {
         return Err(wrong(format!("the tolerance `{text}` is negative")));
     }

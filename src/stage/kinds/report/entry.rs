@@ -277,6 +277,11 @@ impl ReportEntry {
         })
     }
 
+    /// The published value, and how far a number may be off it; a claim has none.
+    pub fn aim(&self) -> Option<(f64, f64)> {
+        self.published.as_ref().map(|target| (target.stated.number, target.tolerance))
+    }
+
     /// Compares; `inside` is what its number is inside the intervals of its inputs.
     ///
     /// # Errors
@@ -306,21 +311,25 @@ impl ReportEntry {
                 (held, count as f64, if count == 1 { rows.written(0) } else { String::new() }, remark)
             }
         };
-        let published = self.published.as_ref().map_or(total, |target| target.stated.number);
-        let tolerance = self.published.as_ref().map_or(0.0, |target| target.tolerance);
-        let expected = match &self.expected {
-            Some(target) => Some(target.within(unit).map_err(Diagnostic::new)?),
-            None => None,
-        };
-        let (proof_holds, proof) = match self.prove(inputs, published, computed)? {
-            Some((holds, text)) => (Some(holds), text),
-            None => (None, String::new()),
-        };
+        let (published, tolerance) = self.aim().unwrap_or((total, 0.0));
+        let expected = self.expected.as_ref().map(|target| target.within(unit)).transpose().map_err(Diagnostic::new)?;
+        let (proof_holds, proof) = self.prove(inputs, published, computed)?.unzip();
+        let proof = proof.unwrap_or_default();
         let has_reason = !self.because.is_empty();
         let is_claim = self.published.is_none();
         let range = inside.as_ref().and_then(Inside::ends);
-        let comparison =
-            Comparison { published, computed, range, tolerance, expected, has_reason, proof_holds, is_claim };
+        let is_broken = inside.as_ref().is_some_and(Inside::is_broken);
+        let comparison = Comparison {
+            published,
+            computed,
+            range,
+            is_broken,
+            tolerance,
+            expected,
+            has_reason,
+            proof_holds,
+            is_claim,
+        };
         let verdict = comparison.judge().map_err(Diagnostic::new)?;
         let found = match (is_claim, total > 1.0) {
             (false, _) => String::new(),

@@ -7,12 +7,13 @@ mod checks;
 mod warned;
 
 use super::stated_figure::{Best, How, Logarithmic, StatedFigure, StatedFigureNames, StatedMark, Width, check_map};
+use crate::stage::quantity::read;
 use crate::stage::{Ahead, Named};
 use declare::declared::{Placed, Words};
 use declare::error::Diagnostic;
 use declare::record::{Record, Value};
 use declare::text::is_device;
-use declare::units::{Dimension, parse_quantity};
+use declare::units::Dimension;
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
 use studygraph::table::select::CellName;
@@ -209,7 +210,7 @@ fn read_table(Placed { value, place }: &Placed<String>) -> Result<(String, Strin
 fn read_mark(stated: &StatedMark, record: &Record) -> Result<Mark, Diagnostic> {
     let place = |Placed { value: text, place }: &Placed<String>| {
         let wrong = |message: String| Diagnostic::new(message).at(*place);
-        let quantity = parse_quantity(text).map_err(|error| wrong(format!("`{text}`: {error}")))?;
+        let quantity = read(text).map_err(|error| wrong(format!("`{text}`: {error}")))?;
         Ok(Place { text: text.trim().to_owned(), dimension: quantity.dimension })
     };
     let [x, y] = [&stated.x, &stated.y].map(|text| text.as_ref().map(place).transpose());

@@ -1,17 +1,27 @@
 //! What the numbers of a report come to inside the intervals of inputs that were printed rounded.
 //!
-//! Every stage that a number comes from is computed anew with one input after the other at both ends of its interval, and
-//! then, for each number, with all of them at their ends: at all corners where they are few, or else at those ends that alone made
-//! it least, or largest. The least and the largest of all that was computed are what is told. A number that is continuous takes
-//! every value between both somewhere inside, so that a published value there is reproduced. Beyond them there is none where the
-//! number is monotone in each input over its interval, and with many inputs whatever the others are. A number that was stated
-//! once, and is used in several places, is one input. Must not know: verdicts, how a stage computes. Values in the row's unit.
+//! Every stage that a number comes from is computed anew with one input after the other at both ends of its interval, or as near
+//! to an end that is refused as it is not, and then, for each number, with all of them at their ends: at all corners where they are few,
+//! or else at those ends that alone made it least, or largest. The least and the largest value of all that was computed are what is told. A
+//! number that is continuous takes every value between both somewhere inside; where what was published is among these, a
+//! place at which it is taken is looked for, so that a pole or a jump does not pass for it. Beyond them there is none where the
+//! number is monotone in each input over its interval, and with many inputs whatever the others are; an input in whose middle it
+//! is beyond both ends is looked at closer. A number that was stated once, and is used in several places, is one input. Must not know:
+//! verdicts, how a stage computes. Values in the row's unit.
 
+mod said;
+mod search;
+
+use std::collections::BTreeMap;
+
+pub use self::said::Inside;
+use self::said::Range;
+use self::search::{Goal, Place};
 use super::entry::ReportEntry;
-use super::verdict::Comparison;
 use crate::stage::rows::chain;
 use crate::stage::rows::output;
 use crate::stage::rows::points::{Asked, Found, Memory, Points};
+use crate::stage::rows::values::level;
 use crate::stage::{Context, Demand, Inputs, Port};
 use declare::error::{Diagnostic, Failure};
 use declare::number::{significant, with_unit};
@@ -35,8 +45,9 @@ pub struct Rounded {
 struct Input {
     /// The fields that have it: several where the study has it by an alias.
     fields: Vec<usize>,
-    /// The first of them, as written.
+    /// The first of them, as written, and the unit of its middle.
     path: String,
+    unit: String,
 }
 
 /// What a number depends on.
@@ -47,28 +58,6 @@ struct Row {
     inputs: Vec<usize>,
     /// A stage that it comes from, which depends on an input and is not computed anew.
     held: Option<String>,
-}
-
-/// So many inputs of a number are tried at all corners.
-const MOST_AT_ALL: usize = 4;
-
-/// What is to be said of a number whose inputs were printed rounded.
-#[derive(Clone, Debug)]
-pub enum Inside {
-    Range(Range),
-    /// Nothing: this stage depends on them and is not computed anew.
-    Held(String),
-}
-
-/// What a number comes to.
-#[derive(Clone, Debug)]
-pub struct Range {
-    least: f64,
-    largest: f64,
-    points: usize,
-    /// At how many of them there is none, and why at the first.
-    refused: usize,
-    reason: String,
 }
 
 impl Rounded {
@@ -93,7 +82,7 @@ impl Rounded {
                 Some(known) => inputs[known].fields.push(ends.len()),
                 None => {
                     places.push(axis.place);
-                    inputs.push(Input { fields: vec![ends.len()], path: axis.path.clone() });
+                    inputs.push(Input { fields: vec![ends.len()], path: axis.path.clone(), unit: axis.unit.clone() });
                 }
             }
             ends.push([about - half, about + half]);
@@ -111,13 +100,6 @@ impl Rounded {
         };
         let rows = entries.iter().map(row).collect();
         Ok(Self { points, names, ends, middles, inputs, rows })
-    }
-
-    /// Puts an input at an end of its interval.
-    fn put(&self, point: &mut [f64], input: usize, side: usize) {
-        for &field in &self.inputs[input].fields {
-            point[field] = self.ends[field][side];
-        }
     }
 
     /// What the stages read of the study.
@@ -153,76 +135,71 @@ impl Rounded {
         (context, inputs): (&Context, &Inputs),
     ) -> Result<Vec<Option<Inside>>, Failure> {
         let mut memory = Memory::default();
-        let as_stated: Vec<Option<f64>> = entries.iter().map(|entry| number(entry, inputs).ok()).collect();
-        // One input after the other: two points each.
-        let alone: Vec<Asked> = (0..self.inputs.len())
-            .flat_map(|input| {
-                let needs = |link: usize| self.rows.iter().any(|row| row.inputs.contains(&input) && row.needs[link]);
-                let needed: Vec<bool> = (0..self.names.len()).map(needs).collect();
-                [0, 1].map(|side| {
-                    let mut point = self.middles.clone();
-                    self.put(&mut point, input, side);
-                    (point, needed.clone())
-                })
-            })
-            .collect();
-        let found = self.points.each(&alone, &mut memory, (context, inputs))?;
-        let mut gathered: Vec<Option<Gathered>> = as_stated.iter().map(|number| number.map(Gathered::new)).collect();
-        let mut corners: Vec<Asked> = Vec::new();
-        let mut corners_of: Vec<Vec<usize>> = Vec::new();
-        for (at, (entry, row)) in entries.iter().zip(&self.rows).enumerate() {
-            // By which end each input alone makes the number least, and largest.
-            let mut sides = [vec![None; row.inputs.len()], vec![None; row.inputs.len()]];
-            if let (Some(own), Some(stated)) = (&mut gathered[at], as_stated[at]) {
-                for (place, &input) in row.inputs.iter().enumerate() {
-                    let mut of_input = [stated; 2];
-                    for (side, end) in ["lower", "upper"].into_iter().enumerate() {
-                        let value = self.number_at(entry, row, &found[2 * input + side], inputs);
-                        let path = &self.inputs[input].path;
-                        let value = value.map_err(|why| format!("with `{path}` at its {end} end, {why}"));
-                        if let Ok(value) = value {
-                            for (which, is_further) in
-                                [value < of_input[0], value > of_input[1]].into_iter().enumerate()
-                            {
-                                if is_further {
-                                    of_input[which] = value;
-                                    sides[which][place] = Some(side);
-                                }
-                            }
-                        }
-                        own.add(value);
-                    }
-                }
-            }
-            let wanted = row.wanted(sides);
-            let index = |sides: &Vec<Option<usize>>| {
-                let mut point = self.middles.clone();
-                let moved = row.inputs.iter().zip(sides).filter_map(|(input, side)| Some((*input, (*side)?)));
-                moved.for_each(|(input, side)| self.put(&mut point, input, side));
-                let bits = |point: &[f64]| point.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
-                let known = corners.iter().position(|(other, _)| bits(other) == bits(&point));
-                let index = known.unwrap_or_else(|| {
-                    corners.push((point, vec![false; self.names.len()]));
-                    corners.len() - 1
-                });
-                corners[index].1.iter_mut().zip(&row.needs).for_each(|(asked, needs)| *asked |= needs);
-                index
-            };
-            corners_of.push(wanted.iter().map(index).collect());
-        }
-        let found = self.points.each(&corners, &mut memory, (context, inputs))?;
-        for (at, (entry, row)) in entries.iter().zip(&self.rows).enumerate() {
-            let Some(own) = &mut gathered[at] else { continue };
-            for corner in &corners_of[at] {
-                let value = self.number_at(entry, row, &found[*corner], inputs);
-                own.add(value.map_err(|why| format!("with several inputs at their ends, {why}")));
-            }
-        }
-        let one = |(row, gathered): (&Row, Option<Gathered>)| match &row.held {
-            Some(stage) => Some(Inside::Held(stage.clone())),
-            None => gathered.and_then(Gathered::range).map(Inside::Range),
+        let goal = |(entry, row): (&ReportEntry, &Row)| {
+            let (published, tolerance) = entry.aim()?;
+            let stated = number(entry, inputs).ok()?;
+            (!row.inputs.is_empty()).then_some(Goal { inputs: row.inputs.len(), stated, published, tolerance })
         };
-        Ok(self.rows.iter().zip(gathered).map(one).collect())
+        let goals: Vec<Option<Goal>> = entries.iter().zip(&self.rows).map(goal).collect();
+        let mut ask = |wanted: &[(usize, Place)]| {
+            // The same place for several numbers is one point, at which all that any of them needs is asked for.
+            let mut asked: Vec<Asked> = Vec::new();
+            let mut known: BTreeMap<Vec<u64>, usize> = BTreeMap::new();
+            let mut at = Vec::with_capacity(wanted.len());
+            for (row, place) in wanted {
+                let (row, point) = (&self.rows[*row], self.point(&self.rows[*row], place));
+                let bits = point.iter().map(|value| value.to_bits()).collect();
+                let index = *known.entry(bits).or_insert(asked.len());
+                if index == asked.len() {
+                    asked.push((point, vec![false; self.names.len()]));
+                }
+                asked[index].1.iter_mut().zip(&row.needs).for_each(|(asked, needs)| *asked |= needs);
+                at.push(index);
+            }
+            let found = self.points.each(&asked, &mut memory, (context, inputs))?;
+            let number = |((row, _), at): (&(usize, Place), usize)| {
+                self.number_at(&entries[*row], &self.rows[*row], &found[at], inputs)
+            };
+            Ok(wanted.iter().zip(at).map(number).collect())
+        };
+        let found = search::look(&goals, &mut ask)?;
+        let one = |(row, found): (&Row, Option<search::Found>)| match &row.held {
+            Some(stage) => Some(Inside::Held(stage.clone())),
+            None => found.and_then(|found| Range::of(found, |place| self.words(row, place)).map(Inside::Range)),
+        };
+        Ok(self.rows.iter().zip(found).map(one).collect())
+    }
+
+    /// The values of all fields at a place of the inputs of a row.
+    fn point(&self, row: &Row, place: &[f64]) -> Vec<f64> {
+        let mut point = self.middles.clone();
+        for (&input, &share) in row.inputs.iter().zip(place) {
+            for &field in &self.inputs[input].fields {
+                let ([low, high], middle) = (self.ends[field], self.middles[field]);
+                point[field] = match share {
+                    -1.0 => low,
+                    1.0 => high,
+                    share if share < 0.0 => middle + share * (middle - low),
+                    share => middle + share * (high - middle),
+                };
+            }
+        }
+        point
+    }
+
+    /// The inputs of a row that are not in their middle at a place, with their values.
+    fn words(&self, row: &Row, place: &[f64]) -> Vec<String> {
+        let point = self.point(row, place);
+        let moved = row.inputs.iter().zip(place).filter(|(_, share)| **share != 0.0);
+        let word = |(&input, _): (&usize, &f64)| {
+            let Input { fields, path, unit } = &self.inputs[input];
+            let Some(&field) = fields.first() else { return String::new() };
+            let [low, high] = self.ends[field];
+            let (value, step) =
+                (level(point[field], unit).shown, 1e-6 * (level(high, unit).shown - level(low, unit).shown));
+            format!("`{path}` at {}", with_unit(&significant(value, digits(value, step).clamp(3, 15)), unit))
+        };
+        moved.map(word).collect()
     }
 
     /// The number of an entry with the tables of a point.
@@ -239,22 +216,7 @@ impl Rounded {
 impl Row {
     /// How many corners are tried.
     fn corners(&self) -> usize {
-        match self.inputs.len() {
-            0 | 1 => 0,
-            few @ ..=MOST_AT_ALL => 1 << few,
-            _ => 2,
-        }
-    }
-
-    /// The corners, as an end of each input; `sides` are the ends that alone make the number least, and largest.
-    fn wanted(&self, sides: [Vec<Option<usize>>; 2]) -> Vec<Vec<Option<usize>>> {
-        let count = self.inputs.len();
-        if count <= MOST_AT_ALL {
-            let corner = |corner: usize| (0..count).map(|input| Some(corner >> input & 1)).collect();
-            return (0..self.corners()).map(corner).collect();
-        }
-        // What a single input does is known.
-        sides.into_iter().filter(|sides| sides.iter().flatten().count() > 1).collect()
+        search::corners_of(self.inputs.len())
     }
 }
 
@@ -268,77 +230,5 @@ fn number(entry: &ReportEntry, inputs: &Inputs) -> Result<f64, String> {
     }
 }
 
-/// The values of a number so far.
-struct Gathered {
-    range: Range,
-    is_changed: bool,
-}
-
-impl Gathered {
-    /// Begins with that of the inputs in the middle.
-    fn new(number: f64) -> Self {
-        let range = Range { least: number, largest: number, points: 0, refused: 0, reason: String::new() };
-        Self { range, is_changed: false }
-    }
-
-    fn add(&mut self, value: Result<f64, String>) {
-        let range = &mut self.range;
-        range.points += 1;
-        match value {
-            Ok(value) => {
-                range.least = range.least.min(value);
-                range.largest = range.largest.max(value);
-            }
-            Err(reason) => {
-                if range.refused == 0 {
-                    range.reason = reason;
-                }
-                range.refused += 1;
-            }
-        }
-        self.is_changed = range.least < range.largest || range.refused > 0;
-    }
-
-    /// None where nothing changes it.
-    fn range(self) -> Option<Range> {
-        self.is_changed.then_some(self.range)
-    }
-}
-
-impl Inside {
-    /// The least and the largest value.
-    pub fn ends(&self) -> Option<(f64, f64)> {
-        if let Self::Range(range) = self { Some((range.least, range.largest)) } else { None }
-    }
-
-    pub fn said(&self, comparison: &Comparison, unit: &str) -> String {
-        match self {
-            Self::Range(range) => range.said(comparison, unit),
-            Self::Held(stage) => {
-                format!("inputs were printed rounded; `{stage}` is not computed anew for them, so no range is known")
-            }
-        }
-    }
-}
-
-impl Range {
-    /// Between what it is, and whether some value inside agrees with what is published.
-    fn said(&self, comparison: &Comparison, unit: &str) -> String {
-        let (least, largest) = (self.least, self.largest);
-        // To a hundredth of what is between them.
-        let shown = digits(least.abs().max(largest.abs()), (largest - least) / 2000.0).clamp(3, 12);
-        let (low, high) = (significant(least, shown), significant(largest, shown));
-        let range = format!("{low} to {} over the rounded inputs", with_unit(&high, unit));
-        let reached = match (comparison.agrees_as_stated(), comparison.is_reached()) {
-            (true, _) => "as stated they reproduce it",
-            (false, Some(true)) => "some value inside reproduces it",
-            (false, _) => "none found inside reproduces it",
-        };
-        let Self { refused, points, reason, .. } = self;
-        let refused = match refused {
-            0 => String::new(),
-            _ => format!("; no value at {refused} of {points} points, for example: {reason}"),
-        };
-        format!("{range}; {reached}{refused}")
-    }
-}
+#[cfg(test)]
+mod tests;

@@ -61,6 +61,8 @@ pub struct Comparison {
     pub computed: f64,
     /// The least and the largest value that it comes to inside the intervals of its inputs, where any matters.
     pub range: Option<(f64, f64)>,
+    /// Whether not all that lies between both is taken, so that a published value there need not be.
+    pub is_broken: bool,
     /// How far apart the two may be and still agree.
     pub tolerance: f64,
     /// The value the study stands by, and how far the computed one may be from it.
@@ -108,7 +110,7 @@ impl Comparison {
     #[must_use]
     pub fn is_reached(&self) -> Option<bool> {
         let (least, largest) = self.range?;
-        Some(within(self.published.clamp(least, largest), self.published, self.tolerance))
+        Some(!self.is_broken && within(self.published.clamp(least, largest), self.published, self.tolerance))
     }
 }
 
@@ -125,6 +127,7 @@ mod tests {
         published: 2.316,
         computed: 2.316,
         range: None,
+        is_broken: false,
         tolerance: 0.0005,
         expected: None,
         has_reason: false,
@@ -201,6 +204,13 @@ mod tests {
             ("the largest is on the lower edge", rounded(2.310, 2.3155), true, Verdict::Reproduced),
             ("a reason that is not needed", reason(2.310, 2.330), true, Verdict::Outdated),
             ("a reason that is", reason(2.317, 2.330), false, Verdict::Explained),
+            (
+                "between, but at a pole",
+                Comparison { is_broken: true, ..rounded(2.310, 2.330) },
+                false,
+                Verdict::Unexplained,
+            ),
+            ("a reason at a pole", Comparison { is_broken: true, ..reason(2.310, 2.330) }, false, Verdict::Explained),
             (
                 "not where it was expected",
                 Comparison { expected: Some((2.4, 0.01)), ..rounded(2.310, 2.330) },

@@ -3,12 +3,16 @@
 //! Must not know: where a study states the parameter. Lengths and angles arrive in SI and are shown in mm and degrees.
 
 pub mod parameter;
+mod reached;
 pub mod shown;
-
-use std::fmt;
+#[cfg(test)]
+mod tests;
 
 pub use parameter::Parameter;
+pub use reached::Reached;
 pub use shown::{Degrees, Millimetres, Plain};
+
+use shown::{beside, beside_both};
 
 use super::Side;
 
@@ -37,7 +41,9 @@ pub enum Problem {
     },
     /// The flanks of the rack's teeth meet before its dedendum is reached: (π/4 − h_fP* tan α) is not positive.
     #[error(
-        "the rack's teeth end in a point before they are {dedendum} modules deep: the pressure angle is {angle}, but must be below {largest}"
+        "the rack's teeth end in a point before they are {dedendum} modules deep: the pressure angle is {}, but must be below {}",
+        beside(.angle, .largest),
+        beside(.largest, .angle)
     )]
     NoTipLand {
         /// h_fP*.
@@ -48,7 +54,11 @@ pub enum Problem {
         largest: Degrees,
     },
     /// The round of the rack's tip is more than a full round.
-    #[error("the rack's tip radius is {radius} modules, but must be 0 to {largest} (full round)")]
+    #[error(
+        "the rack's tip radius is {} modules, but must be 0 to {} (full round)",
+        beside(.radius, .largest),
+        beside(.largest, .radius)
+    )]
     TipRoundTooLarge {
         /// ρ_fP*.
         radius: Plain,
@@ -57,7 +67,9 @@ pub enum Problem {
     },
     /// The teeth of the cutter are pointed.
     #[error(
-        "the cutter's teeth are pointed: their flanks meet at a radius of {apex}, its tip radius is {tip}, but must be below that"
+        "the cutter's teeth are pointed: their flanks meet at a radius of {}, its tip radius is {}, but must be below that",
+        beside(.apex, .tip),
+        beside(.tip, .apex)
     )]
     CutterPointed {
         /// r_a0 \[m\].
@@ -67,7 +79,9 @@ pub enum Problem {
     },
     /// The round of the cutter's tip is more than a full round, or begins below its base circle.
     #[error(
-        "the cutter's tip radius is {radius} modules, but must be 0 to {largest}, where its tips are fully round or no flank is left"
+        "the cutter's tip radius is {} modules, but must be 0 to {}, where its tips are fully round or no flank is left",
+        beside(.radius, .largest),
+        beside(.largest, .radius)
     )]
     CutterRoundTooLarge {
         /// ρ_aP0*.
@@ -77,7 +91,9 @@ pub enum Problem {
     },
     /// The cutter's involute begins before the gear's ends.
     #[error(
-        "a cutter of {teeth} teeth has no involute for the flank beyond a radius of {reached}, but the tip circle is at {tip}: it needs more teeth"
+        "a cutter of {teeth} teeth has no involute for the flank beyond a radius of {}, but the tip circle is at {}: it needs more teeth",
+        beside(.reached, .tip),
+        beside(.tip, .reached)
     )]
     CutterTooSmall {
         /// z_0.
@@ -89,7 +105,9 @@ pub enum Problem {
     },
     /// The tool leaves so much stock that its teeth end in a point before they reach the root.
     #[error(
-        "the machining allowance is {allowance} modules, but must be below {largest}, where the tool's teeth end in a point before they are {dedendum} modules deep"
+        "the machining allowance is {} modules, but must be below {}, where the tool's teeth end in a point before they are {dedendum} modules deep",
+        beside(.allowance, .largest),
+        beside(.largest, .allowance)
     )]
     AllowanceTooLarge {
         /// q*.
@@ -115,7 +133,10 @@ pub enum Problem {
     },
     /// The notch that grinding leaves does not go over into the root.
     #[error(
-        "grinding leaves a notch {depth} deep in the root, since the allowance is larger than the protuberance; the radius of the notch is {radius} modules, but must be above {smallest} and at most {largest} to meet the root"
+        "grinding leaves a notch {depth} deep in the root, since the allowance is larger than the protuberance; the radius of the notch is {} modules, but must be above {} and at most {} to meet the root",
+        beside_both(.radius, [.smallest, .largest]),
+        beside(.smallest, .radius),
+        beside(.largest, .radius)
     )]
     NotchRadius {
         /// ρ_g*.
@@ -129,7 +150,9 @@ pub enum Problem {
     },
     /// The form radius is not below the tip radius: undercut has cut the involute off, or the tip circle is too small.
     #[error(
-        "no involute is left: the root curve reaches up to {form}, the tip circle is at {tip}; {teeth} teeth need a profile shift of at least {minimum} modules not to be undercut"
+        "no involute is left: the root curve reaches up to {}, the tip circle is at {}; {teeth} teeth need a profile shift of at least {minimum} modules not to be undercut",
+        beside(.form, .tip),
+        beside(.tip, .form)
     )]
     NoFlank {
         /// Form radius, where root curve and involute meet \[m\].
@@ -143,7 +166,9 @@ pub enum Problem {
     },
     /// The thickness s_a at the tip circle is not positive.
     #[error(
-        "the teeth are pointed: the flanks meet at a radius of {apex}, the tip radius is {tip}, but must be below that"
+        "the teeth are pointed: the flanks meet at a radius of {}, the tip radius is {}, but must be below that",
+        beside(.apex, .tip),
+        beside(.tip, .apex)
     )]
     Pointed {
         /// r_a \[m\].
@@ -154,7 +179,12 @@ pub enum Problem {
         tip_is_given: bool,
     },
     /// The bore is so small that the body could turn about it without limit, or it reaches the root circle.
-    #[error("the bore radius is {bore}, but must be at least {minimum} and below the root radius {root}")]
+    #[error(
+        "the bore radius is {}, but must be at least {} and below the root radius {}",
+        beside_both(.bore, [.minimum, .root]),
+        beside(.minimum, .bore),
+        beside(.root, .bore)
+    )]
     Bore {
         /// Radius of the bore \[m\].
         bore: Millimetres,
@@ -175,7 +205,9 @@ pub enum Problem {
     },
     /// a_w is more than a thousandth of a module below the one without backlash, or not finite.
     #[error(
-        "the centre distance is {found}, but must be at least {minimum}, or a thousandth of a module less, for the teeth to fit into each other"
+        "the centre distance is {}, but must be at least {}, or a thousandth of a module less, for the teeth to fit into each other",
+        beside(.found, .minimum),
+        beside(.minimum, .found)
     )]
     CentreDistance {
         /// a_w \[m\].
@@ -185,7 +217,9 @@ pub enum Problem {
     },
     /// inv α_w = inv α + 2 tan α (x1 + x2)/(z1 + z2) is not positive, so there is no α_w.
     #[error(
-        "profile shifts that add up to {sum} modules leave no working pressure angle; their sum must be above {minimum}"
+        "profile shifts that add up to {} modules leave no working pressure angle; their sum must be above {}",
+        beside(.sum, .minimum),
+        beside(.minimum, .sum)
     )]
     ProfileShiftSum {
         /// x1 + x2 \[modules\].
@@ -205,7 +239,11 @@ pub enum Problem {
     },
     /// The mate's tip touches below the form radius, where there is no involute of this gear.
     #[error(
-        "interference: the mate's tip ({mate_tip}) would touch {reached}, below the form radius {form}; the mate's tip radius must be at most {largest}"
+        "interference: the mate's tip ({}) would touch {}, below the form radius {}; the mate's tip radius must be at most {}",
+        beside(.mate_tip, .largest),
+        .reached.beside(*.form),
+        .reached.form(*.form),
+        beside(.largest, .mate_tip)
     )]
     Interference {
         /// r_a of the mate \[m\].
@@ -218,7 +256,7 @@ pub enum Problem {
         largest: Millimetres,
     },
     /// ε_α is not above 1: a pair of teeth would leave contact before the next one takes over.
-    #[error("the contact ratio is {ratio}, but must be above 1")]
+    #[error("the contact ratio is {}, but must be above 1", beside(.ratio, &Plain(1.0)))]
     ContactRatio {
         /// ε_α.
         ratio: Plain,
@@ -235,7 +273,9 @@ pub enum Problem {
     },
     /// Root arcs of a stated radius overlap on the root circle.
     #[error(
-        "an arc of radius {radius} at the root does not fit between two teeth: neighbouring arcs would overlap by {overlap}; its radius must be at most {largest}"
+        "an arc of radius {} at the root does not fit between two teeth: neighbouring arcs would overlap by {overlap}; its radius must be at most {}",
+        beside(.radius, .largest),
+        beside(.largest, .radius)
     )]
     RootArcTooLarge {
         /// Radius of the arc \[m\].
@@ -247,7 +287,9 @@ pub enum Problem {
     },
     /// An arc from base circle to root circle is asked for, but the root circle is not inside the base circle.
     #[error(
-        "{construction} begins on the base circle and ends on the root circle, so the root radius {root} must be below the base radius {base}; with this rack that is so below {maximum} teeth, and there are {teeth}"
+        "{construction} begins on the base circle and ends on the root circle, so the root radius {} must be below the base radius {}; with this rack that is so below {maximum} teeth, and there are {teeth}",
+        beside(.root, .base),
+        beside(.base, .root)
     )]
     NothingBelowBase {
         /// What asks for it, as the subject of the message.
@@ -274,7 +316,11 @@ pub enum Problem {
         minimum: Plain,
     },
     /// A tooth is to be thicker at least than at most.
-    #[error("the smallest tooth is {smallest}, but must be at most the largest, {largest}")]
+    #[error(
+        "the smallest tooth is {}, but must be at most the largest, {}",
+        beside(.smallest, .largest),
+        beside(.largest, .smallest)
+    )]
     ThicknessLimits {
         /// As stated: an allowance, a span, a dimension over balls \[m\].
         largest: Millimetres,
@@ -283,7 +329,9 @@ pub enum Problem {
     },
     /// Balls that measure as little would lie inside the base circle.
     #[error(
-        "the dimension over balls is {found}, but must be above {minimum}, where their centres are on the base circle"
+        "the dimension over balls is {}, but must be above {}, where their centres are on the base circle",
+        beside(.found, .minimum),
+        beside(.minimum, .found)
     )]
     BallsInside {
         /// M_dK \[m\].
@@ -292,7 +340,11 @@ pub enum Problem {
         minimum: Millimetres,
     },
     /// Teeth that are made so much thinner do not exist.
-    #[error("the thickness allowance is {allowance}, but must be above {minimum}, where the tooth vanishes")]
+    #[error(
+        "the thickness allowance is {}, but must be above {}, where the tooth vanishes",
+        beside(.allowance, .minimum),
+        beside(.minimum, .allowance)
+    )]
     NoTooth {
         /// A_s \[m\].
         allowance: Millimetres,
@@ -301,7 +353,9 @@ pub enum Problem {
     },
     /// A chamfer or rounding of the tip does not fit the tooth.
     #[error(
-        "the tip is broken by {size}, but must be by {largest} at most, where the two flanks' breaks meet or no flank is left"
+        "the tip is broken by {}, but must be by {} at most, where the two flanks' breaks meet or no flank is left",
+        beside(.size, .largest),
+        beside(.largest, .size)
     )]
     TipBreakTooLarge {
         /// Size of the chamfer, or radius of the rounding \[m\].
@@ -321,15 +375,6 @@ pub enum Problem {
         /// What is taken off at the form point, normal to the flank \[m\].
         depth: Millimetres,
     },
-}
-
-/// How deep interference reaches.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reached {
-    /// Down to this radius of the gear \[m\], below its form radius.
-    Radius(Millimetres),
-    /// Beyond the tangent point of the path of contact, where there is no involute.
-    InsideBaseCircle,
 }
 
 /// What an error is about, of all that its user stated.
@@ -397,42 +442,5 @@ fn side_prefix(side: Option<Side>) -> &'static str {
         None => "",
         Some(Side::Pinion) => "pinion: ",
         Some(Side::Gear) => "gear: ",
-    }
-}
-
-impl fmt::Display for Reached {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Radius(radius) => write!(formatter, "at a radius of {radius}"),
-            Self::InsideBaseCircle => formatter.write_str("beyond the tangent point on the base circle"),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_shown_with_the_digits_that_tell() {
-        for (value, shown) in [
-            (0.014_25, "14.25 mm"),
-            (0.1, "100 mm"),
-            (-1.234_567_8e-4, "-0.123457 mm"),
-            (0.0, "0 mm"),
-            (1e-12, "1.00000e-9 mm"),
-        ] {
-            assert_eq!(Millimetres(value).to_string(), shown);
-        }
-        // Five digits below one and nine above are written out.
-        for (value, shown) in [
-            (123_456_789.0, "123456789"),
-            (999_999_999.0, "999999999"),
-            (1e9, "1.00000e9"),
-            (1e-4, "0.0001"),
-            (0.999e-4, "9.99000e-5"),
-        ] {
-            assert_eq!(Plain(value).to_string(), shown);
-        }
     }
 }

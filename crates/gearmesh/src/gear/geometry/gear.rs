@@ -6,6 +6,7 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::ops::RangeInclusive;
 
+use super::error::shown::{beside, beside_both};
 use super::error::{Degrees, GeometryError, Millimetres, Parameter, Plain, Problem};
 use super::flank_end::FlankEnd;
 use super::generated::Generated;
@@ -38,41 +39,38 @@ impl Gear {
         );
         let tip_radius =
             specification.tip_radius.unwrap_or(reference_radius + module * (rack.addendum + profile_shift));
+        let half_base_angle = (FRAC_PI_2 + 2.0 * generating_shift * libm::tan(pressure_angle)) / f64::from(teeth)
+            + involute(pressure_angle);
+        let least_shift =
+            -(FRAC_PI_2 + f64::from(teeth) * involute(pressure_angle)) / (2.0 * libm::tan(pressure_angle));
+        // Without an allowance that is what the profile shift must be above; with one it is rarely the rack that is wrong.
+        if half_base_angle <= 0.0 && specification.thickness_allowance < 0.0 {
+            let [allowance, minimum] =
+                [specification.thickness_allowance, specification.allowance_of(least_shift)].map(Millimetres);
+            return Err(Problem::NoTooth { allowance, minimum }.into());
+        }
         if root_radius <= 0.0
             && let Some(cutter) = specification.cutter
         {
-            let largest = cutter.addendum + root_radius / module;
+            let [own, largest] = [cutter.addendum, cutter.addendum + root_radius / module].map(Plain);
             return Err(out_of_range(
                 Parameter::CutterAddendum,
-                &Plain(cutter.addendum),
-                format!("below {} modules, where the root circle vanishes", Plain(largest)),
+                beside(&own, &largest),
+                format!("below {} modules, where the root circle vanishes", beside(&largest, &own)),
             ));
         }
         if root_radius <= 0.0 {
-            let largest = 0.5 * f64::from(teeth) + generating_shift;
+            let [own, largest] = [rack.dedendum, 0.5 * f64::from(teeth) + generating_shift].map(Plain);
             return Err(out_of_range(
                 Parameter::RackDedendum,
-                &Plain(rack.dedendum),
-                format!("below {} modules, where the root circle vanishes", Plain(largest)),
+                beside(&own, &largest),
+                format!("below {} modules, where the root circle vanishes", beside(&largest, &own)),
             ));
         }
-        let half_base_angle = (FRAC_PI_2 + 2.0 * generating_shift * libm::tan(pressure_angle)) / f64::from(teeth)
-            + involute(pressure_angle);
         if half_base_angle <= 0.0 {
-            let at_reference = FRAC_PI_2 + f64::from(teeth) * involute(pressure_angle);
-            let minimum = -at_reference / (2.0 * libm::tan(pressure_angle));
-            // Without an allowance that is what the profile shift must be above.
-            return Err(if specification.thickness_allowance < 0.0 {
-                let [allowance, minimum] =
-                    [specification.thickness_allowance, specification.allowance_of(minimum)].map(Millimetres);
-                Problem::NoTooth { allowance, minimum }.into()
-            } else {
-                out_of_range(
-                    Parameter::ProfileShift,
-                    &Plain(profile_shift),
-                    format!("above {} modules, where the tooth vanishes", Plain(minimum)),
-                )
-            });
+            let [own, minimum] = [profile_shift, least_shift].map(Plain);
+            let range = format!("above {} modules, where the tooth vanishes", beside(&minimum, &own));
+            return Err(out_of_range(Parameter::ProfileShift, beside(&own, &minimum), range));
         }
         let Generated { joint, .. } = Generated::new(specification, base_radius, half_base_angle)?;
         let mut gear = Self {
@@ -168,16 +166,16 @@ impl Gear {
     }
 }
 
-fn out_of_range(parameter: Parameter, found: &impl ToString, range: String) -> GeometryError {
-    Problem::OutOfRange { parameter, found: found.to_string(), range }.into()
+fn out_of_range(parameter: Parameter, found: String, range: String) -> GeometryError {
+    Problem::OutOfRange { parameter, found, range }.into()
 }
 
 fn check_ranges(specification: &Specification) -> Result<(), GeometryError> {
-    type Show = fn(f64) -> String;
+    type Show = fn(f64, [f64; 2]) -> String;
     type Row = (Parameter, f64, RangeInclusive<f64>, Show, &'static str);
-    let length: Show = |value| Millimetres(value).to_string();
-    let angle: Show = |value| Degrees(value).to_string();
-    let plain: Show = |value| Plain(value).to_string();
+    let length: Show = |value, [one, other]| beside_both(&Millimetres(value), [&Millimetres(one), &Millimetres(other)]);
+    let angle: Show = |value, [one, other]| beside_both(&Degrees(value), [&Degrees(one), &Degrees(other)]);
+    let plain: Show = |value, [one, other]| beside_both(&Plain(value), [&Plain(one), &Plain(other)]);
     let Specification { teeth, module, pressure_angle, profile_shift, rack, face_width, material, .. } = *specification;
     let rows: [Row; 14] = [
         (Parameter::Teeth, teeth.into(), 4.0..=10_000.0, plain, ""),
@@ -205,8 +203,9 @@ fn check_ranges(specification: &Specification) -> Result<(), GeometryError> {
     });
     for (parameter, value, range, show, unit) in rows.into_iter().chain(of_cutter) {
         if !range.contains(&value) {
-            let range = format!("{} to {}{unit}", show(*range.start()), show(*range.end()));
-            return Err(out_of_range(parameter, &(show(value) + unit), range));
+            let ends = [*range.start(), *range.end()];
+            let [from, to] = ends.map(|end| show(end, [value; 2]));
+            return Err(out_of_range(parameter, show(value, ends) + unit, format!("{from} to {to}{unit}")));
         }
     }
     Ok(())
@@ -233,11 +232,9 @@ fn check_rack(specification: &Specification) -> Result<(), GeometryError> {
         return Err(Problem::TipRoundTooLarge { radius: Plain(rack.tip_radius), largest: Plain(largest) }.into());
     }
     if rack.protuberance > 0.0 && rack.protuberance_angle >= pressure_angle {
-        return Err(out_of_range(
-            Parameter::ProtuberanceAngle,
-            &Degrees(rack.protuberance_angle),
-            format!("below the pressure angle, {}", Degrees(pressure_angle)),
-        ));
+        let [own, flank] = [rack.protuberance_angle, pressure_angle].map(Degrees);
+        let range = format!("below the pressure angle, {}", beside(&flank, &own));
+        return Err(out_of_range(Parameter::ProtuberanceAngle, beside(&own, &flank), range));
     }
     Ok(())
 }

@@ -8,6 +8,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::Specification;
+use super::error::shown::beside;
 use super::error::{GeometryError, Millimetres, Parameter, Plain, Problem};
 use super::involute::{inverse_involute, involute};
 use crate::numeric::crossing;
@@ -89,11 +90,12 @@ impl PinionCutter {
         let Specification { module, pressure_angle, .. } = *specification;
         let circles @ [base_radius, tip_radius, half_base_angle] = circles(specification, self);
         if tip_radius <= base_radius {
-            let smallest = base_radius / module - 0.5 * f64::from(self.teeth) - self.addendum;
+            let smallest = Plain(base_radius / module - 0.5 * f64::from(self.teeth) - self.addendum);
+            let own = Plain(self.profile_shift);
             return Err(Problem::OutOfRange {
                 parameter: Parameter::CutterProfileShift,
-                found: Plain(self.profile_shift).to_string(),
-                range: format!("above {} modules, where its tip circle is its base circle", Plain(smallest)),
+                found: beside(&own, &smallest),
+                range: format!("above {} modules, where its tip circle is its base circle", beside(&smallest, &own)),
             }
             .into());
         }
@@ -111,14 +113,12 @@ impl PinionCutter {
         let shifts = specification.generating_profile_shift() + self.profile_shift;
         let value = involute(pressure_angle) + 2.0 * libm::tan(pressure_angle) * shifts / teeth;
         if value <= 0.0 {
-            let smallest = -0.5 * involute(pressure_angle) * teeth / libm::tan(pressure_angle);
+            let sum = -0.5 * involute(pressure_angle) * teeth / libm::tan(pressure_angle);
+            let [own, smallest] = [self.profile_shift, sum - specification.generating_profile_shift()].map(Plain);
             return Err(Problem::OutOfRange {
                 parameter: Parameter::CutterProfileShift,
-                found: Plain(self.profile_shift).to_string(),
-                range: format!(
-                    "above {}, where no centre distance brings it into mesh",
-                    Plain(smallest - specification.generating_profile_shift())
-                ),
+                found: beside(&own, &smallest),
+                range: format!("above {}, where no centre distance brings it into mesh", beside(&smallest, &own)),
             }
             .into());
         }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::curve::{Curve, Growth};
 use super::{MOST_AMOUNT, Modification, Specified};
+use crate::gear::geometry::error::shown::decimals;
 use crate::gear::geometry::{GearPair, Side};
 use declare::error::Diagnostic;
 use declare::units::LENGTH;
@@ -50,8 +51,10 @@ impl Specified for EndRelief {
         let longest = if self.end == FaceEnd::Both { 0.5 * face_width } else { face_width };
         if self.length > longest {
             let (given, longest) = (self.length * 1e3, longest * 1e3);
-            let message =
-                format!("the end relief is {given:.6} mm long; the face leaves room for 0 to {longest:.6} mm");
+            let digits = decimals(given, longest);
+            let message = format!(
+                "the end relief is {given:.digits$} mm long; the face leaves room for 0 to {longest:.digits$} mm"
+            );
             return Err(Diagnostic::new(message).of(Self::NAMES.length));
         }
         let start = 0.5 * face_width - self.length;

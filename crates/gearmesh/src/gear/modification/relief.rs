@@ -7,6 +7,7 @@ use super::curve::{Curve, Growth};
 use super::flank::Flank;
 use super::{MOST_AMOUNT, Modification};
 use crate::gear::geometry::GearPair;
+use crate::gear::geometry::error::shown::decimals;
 use crate::numeric::quadratic::Quadratic;
 use declare::error::Diagnostic;
 use declare::units::{ANGLE, FORCE, LENGTH, RATIO, SPECIFIC_STIFFNESS};
@@ -172,7 +173,9 @@ impl Start {
             Self::RollAngle(roll) => Ok(Some(roll)),
             Self::Diameter(diameter) => flank.roll_at_diameter(diameter).map(Some).ok_or_else(|| {
                 let (given, base) = (diameter * 1e3, flank.base_radius * 2e3);
-                let message = format!("the start diameter {given:.6} mm is below the base circle, {base:.6} mm");
+                let digits = decimals(given, base);
+                let message =
+                    format!("the start diameter {given:.digits$} mm is below the base circle, {base:.digits$} mm");
                 Diagnostic::new(message).of(self.field())
             }),
         }
@@ -213,8 +216,9 @@ impl Ramp {
         let longest = flank.length();
         if !(from >= 0.0 && from <= longest * (1.0 + 1e-12)) {
             let (lower, upper) = (first.min(last), first.max(last));
+            let digits = decimals(from.abs() * 1e3, longest * 1e3);
             return Err(Diagnostic::new(format!(
-                "the relief starts {:.6} mm {} the end of the flank; the active flank is {:.6} mm long (roll angles {:.6} \
+                "the relief starts {:.digits$} mm {} the end of the flank; the active flank is {:.digits$} mm long (roll angles {:.6} \
                  to {:.6} deg, diameters {:.6} to {:.6} mm)",
                 from.abs() * 1e3,
                 if from < 0.0 { "beyond" } else { "from" },

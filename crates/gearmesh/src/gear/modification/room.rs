@@ -4,6 +4,7 @@
 
 use super::flank::Flank;
 use super::{Design, Gears, Modification, NamedModification};
+use crate::gear::geometry::error::shown::decimals;
 use crate::gear::geometry::{GearPair, Side};
 use declare::error::Diagnostic;
 
@@ -74,9 +75,10 @@ impl Design {
         }
         let [diameter, depth, maximum] =
             [flank.diameter(roll.min(flank.tip_roll)), depth, gear.depth_to_centreline(roll)].map(|m| m * 1e3);
+        let digits = decimals(depth, maximum);
         Err(Diagnostic::new(format!(
-            "the {}'s flank would lose {depth:.6} mm, normal to it, at a diameter of {diameter:.6} mm; all its \
-             modifications together may take 0 to {maximum:.6} mm there, which is half of the tooth",
+            "the {}'s flank would lose {depth:.digits$} mm, normal to it, at a diameter of {diameter:.6} mm; all its \
+             modifications together may take 0 to {maximum:.digits$} mm there, which is half of the tooth",
             side.name()
         )))
     }

@@ -321,8 +321,13 @@ fn more_than_half_of_the_tooth_is_refused_with_what_may_be_taken() {
             }
             let message = taken(limit * (1.0 + 1e-9)).unwrap_err().message;
             let diameter = flank.diameter(if family == "root_relief" { flank.root_roll } else { flank.tip_roll });
-            let range = format!("0 to {:.6} mm there", maximum * 1e3);
-            assert!(message.contains(&range) && message.contains(&format!("{:.6} mm;", diameter * 1e3)), "{message}");
+            let number = |before: &str, behind: &str| -> f64 {
+                let (_, rest) = message.split_once(before).unwrap();
+                rest.split_once(behind).unwrap().0.parse().unwrap()
+            };
+            let [lost, most] = [number("would lose ", " mm"), number("0 to ", " mm there")];
+            assert!((most / (maximum * 1e3) - 1.0).abs() < 1e-6 && lost > most, "{message}");
+            assert!(message.contains(&format!("{:.6} mm;", diameter * 1e3)), "{message}");
         }
         // Two that fit alone: along the profile and along the face, each half.
         let half = [("amount", Quantity(0.5001 * tip)), length.clone()];

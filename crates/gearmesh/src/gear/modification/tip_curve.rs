@@ -7,8 +7,12 @@
 //! curve is a quadratic. A itself, moved by the angle σ along the tip circle, is r_b σ deep on the normal of u_a + σ:
 //! beyond the roll angle u_a of the nominal corner, where the depth is less. Must not know: compliance, load.
 
+#[cfg(test)]
+mod tests;
+
 use super::{MOST_AMOUNT, Modification};
 use crate::gear::geometry::Gear;
+use crate::gear::geometry::error::shown::decimals;
 use declare::error::Diagnostic;
 use declare::units::LENGTH;
 use declare::{Alternatives, Declared, Words};
@@ -349,8 +353,9 @@ impl TipPoint {
         let thickness = gear.tip_thickness();
         if amount > 0.5 * thickness {
             let (given, maximum) = (amount * 1e3, thickness * 0.5e3);
+            let digits = decimals(given, maximum);
             let message = format!(
-                "A is moved by {given:.6} mm along the tip circle; half of the tip leaves 0 to {maximum:.6} mm"
+                "A is moved by {given:.digits$} mm along the tip circle; half of the tip leaves 0 to {maximum:.digits$} mm"
             );
             return Err(Diagnostic::new(message).of(self.field()));
         }
@@ -367,8 +372,9 @@ impl FlankPoint {
         };
         if !(radius >= gear.form_radius && radius <= gear.tip_radius) {
             let [given, minimum, maximum] = [radius, gear.form_radius, gear.tip_radius].map(|radius| radius * 2e3);
+            let digits = decimals(given, minimum).max(decimals(given, maximum));
             let message = format!(
-                "the start diameter is {given:.6} mm; the involute has diameters of {minimum:.6} to {maximum:.6} mm"
+                "the start diameter is {given:.digits$} mm; the involute has diameters of {minimum:.digits$} to {maximum:.digits$} mm"
             );
             return Err(Diagnostic::new(message).of(self.field()));
         }
@@ -424,27 +430,5 @@ impl Modification for TipCurve {
             ("x_B", x_b),
             ("y_B", y_b),
         ]
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Tier: invariant; a conic has the same value at a place, whichever frame that is given in.
-    #[test]
-    fn a_conic_seen_from_another_frame_is_the_same() {
-        let value = |of: &Conic, [x, y]: [f64; 2]| {
-            let Conic { xx, xy, yy, .. } = *of;
-            xx * x * x + 2.0 * xy * x * y + yy * y * y + 2.0 * (of.x * x + of.y * y) + of.constant
-        };
-        let conic = Conic { xx: 0.7, xy: -0.4, yy: 1.3, x: 0.2, y: -0.9, constant: 0.5 };
-        let ([a, b], t) = ([0.3, -0.8], 0.6_f64);
-        let (s, c) = t.sin_cos();
-        let seen = conic.seen_from([a, b], t);
-        for [x, y] in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [-0.6, 0.9], [2.0, -1.5], [0.4, 0.4]] {
-            let there = value(&conic, [a + x * c + y * s, b + x * s - y * c]);
-            assert!((value(&seen, [x, y]) - there).abs() < 1e-14, "at {x}, {y}");
-        }
     }
 }

@@ -4,15 +4,24 @@
 //! done with it.
 
 use super::super::document::{Content, Node};
-use super::super::words::quote;
+use super::super::notation;
+use super::super::words::{self, quote};
 use super::Measure;
 use declare::error::{Diagnostic, Place};
 use declare::record::Record;
 use declare::record::varied::{Axis, Form, Slot, Spread, Values, Within};
-use declare::units::{Dimension, RATIO, split_quantity};
+use declare::units::{Dimension, RATIO, parse_quantity, split_quantity};
 
 /// As which a half-width may be marked.
-const SIGNS: [&str; 3] = ["±", "+/-", "+-"];
+const SIGNS: [&str; 4] = ["±", "+/-", "+-", r"\pm"];
+/// What stands for it elsewhere: markup, escapes outside of double quotes, other strokes, words.
+const OTHER_SIGNS: [&str; 15] = [
+    r"$\pm$", r"\u00b1", r"\u00B1", r"\xb1", "&plusmn;", "&pm;", "&#177;", "(±)", "(+/-)", "+/−", "+−", "-+", "−+",
+    "∓", "+ -",
+];
+/// So many times what is usual, or a part of it, is far off; so many is near.
+const FAR: f64 = 100.0;
+const NEAR: f64 = 10.0;
 
 /// A number that was printed rounded.
 #[derive(Clone, Debug)]
@@ -66,8 +75,28 @@ pub fn halves(text: &str) -> Option<(&str, &str)> {
     Some((text[..at].trim(), text[at + length..].trim()))
 }
 
+/// What an interval in another notation is here; none where a text is no such interval.
+fn elsewhere(text: &str) -> Option<String> {
+    let written =
+        |before: &str, behind: &str| format!("an interval is written `{} ± {}`", before.trim(), behind.trim());
+    let text = text.trim();
+    if let Some((at, sign)) = OTHER_SIGNS.iter().find_map(|sign| Some((text.find(sign)?, sign))) {
+        return Some(written(&text[..at], &text[at + sign.len()..]));
+    }
+    if let Some((inside, unit)) = text.strip_prefix('(').and_then(|text| text.split_once(')'))
+        && let Some((before, behind)) = halves(inside)
+    {
+        return Some(written(before, &format!("{behind} {}", unit.trim())));
+    }
+    let (number, rest) = split_quantity(text);
+    let is_sided = !number.is_empty() && halves(text).is_none() && rest.starts_with(['+', '-', '−']);
+    is_sided.then(|| {
+        "an interval is as wide to both sides: `0.504 ± 0.0005` is its middle and half of its width".to_owned()
+    })
+}
+
 /// The middle with its unit, which may stand behind both.
-fn middle(text: &str) -> Option<String> {
+pub fn middle(text: &str) -> Option<String> {
     let (middle, half) = halves(text)?;
     let (number, unit) = split_quantity(half);
     let is_behind_both = split_quantity(middle).1.is_empty() && !number.is_empty() && !unit.is_empty();
@@ -90,25 +119,42 @@ impl Measure<'_> {
     /// # Errors
     /// When a half is missing or cannot be read, has no width, or an end is outside the range.
     pub fn interval(&self, node: &Node) -> Result<Option<Interval>, Diagnostic> {
-        let Content::Scalar { text, quoted } = &node.content else { return Ok(None) };
-        let Some((before, behind)) = halves(text) else { return Ok(None) };
+        let Content::Scalar { text, .. } = &node.content else { return Ok(None) };
         let wrong = |message: String| Diagnostic::new(message).at(node.place);
         let shown = quote(text);
+        let other_notation =
+            || wrong(format!("{shown} is not a number as a study has it; {} is expected", self.expected()));
+        if let Some(help) = elsewhere(text) {
+            return Err(other_notation().help(help));
+        }
+        let Some((before, behind)) = halves(text) else { return Ok(None) };
         if before.is_empty() || behind.is_empty() {
             let where_to = if before.is_empty() { "before" } else { "behind" };
             let message = format!("nothing stands {where_to} the sign of {shown}; {} is expected", self.expected());
             return Err(wrong(message).help("an interval is written `0.504 ± 0.0005`, or `5.05 ± 0.005 mm`"));
         }
-        let is_percent = [before, behind].map(|half| split_quantity(half).1 == "%");
-        if self.dimension == Some(RATIO) && is_percent[0] != is_percent[1] {
-            let message = format!("{shown} can be read in two ways; {} is expected", self.expected());
-            return Err(wrong(message).help("write `%` behind both numbers, or behind none"));
+        if halves(behind).is_some() {
+            let message = format!("{shown} has more than one sign; {} is expected", self.expected());
+            return Err(wrong(message).help("an interval is written `0.504 ± 0.0005`, or `5.05 ± 0.005 mm`"));
         }
-        let part = |text: String| Node { content: Content::Scalar { text, quoted: *quoted }, place: node.place };
-        let own = middle(text).unwrap_or_default();
-        let middle = self.single(&part(own.clone()))?;
+        if let Some(help) = [before, behind].into_iter().find_map(notation::help) {
+            return Err(other_notation().help(notation::with_reading(help, text, &|text| self.distance(text))));
+        }
+        if let Some(found) =
+            self.in_percent(before, behind, &shown).or_else(|| self.of_one_unit(before, behind, &shown))
+        {
+            return Err(found.at(node.place));
+        }
+        // It is text to any reader of YAML, in quotes or not.
+        let part = |text: String| Node { content: Content::Scalar { text, quoted: false }, place: node.place };
         let width = Self { minimum: f64::NEG_INFINITY, maximum: f64::INFINITY, ..*self };
-        let half = width.single(&part(behind.to_owned()))?;
+        let own = middle(text).unwrap_or_default();
+        let half = || width.single(&part(behind.to_owned()));
+        // What is wrong with a unit behind both is told of what is written.
+        if own != before || split_quantity(behind).0.is_empty() {
+            half()?;
+        }
+        let (middle, half) = (self.single(&part(own.clone()))?, half()?);
         if half <= 0.0 {
             let message =
                 format!("{} behind the sign of {shown} is no half of a width: it is not above 0", quote(behind));
@@ -122,6 +168,70 @@ impl Measure<'_> {
         let unit = if self.dimension.is_none_or(|dimension| dimension == RATIO) { "" } else { split_quantity(&own).1 };
         let (unit, range) = (unit.to_owned(), (self.minimum, self.maximum));
         Ok(Some(Interval { middle, half, unit, dimension: self.dimension, range, place: node.place }))
+    }
+
+    /// A half-width in percent, which may be a share of the number, or as many hundredths; what else in percent is no ratio.
+    fn in_percent(&self, before: &str, behind: &str, shown: &str) -> Option<Diagnostic> {
+        let [(number, unit), (share, of_half)] = [before, behind].map(split_quantity);
+        let is_percent = [unit, of_half].map(|unit| unit == "%");
+        let is_ratio = self.dimension == Some(RATIO);
+        if !is_percent.contains(&true) || is_ratio && is_percent == [true; 2] {
+            return None;
+        }
+        let (Ok(number), Ok(share)) = (number.parse::<f64>(), share.parse::<f64>()) else { return None };
+        let written = |half: f64, unit: &str| {
+            let [middle, half] = [number, half].map(|value| format!("{} {unit}", words::number(value)));
+            format!("`{} ± {}`", middle.trim(), half.trim())
+        };
+        let two_ways = format!("{shown} can be read in two ways; {} is expected", self.expected());
+        let of_it = written(number.abs() * share / 100.0, unit);
+        Some(match (self.dimension, is_percent) {
+            (None, [true, _]) => {
+                let half = if is_percent[1] { share / 100.0 } else { share };
+                let [middle, half] = [number / 100.0, half].map(words::number);
+                let message = format!("{shown} has a unit; {} is a plain number", quote(self.name));
+                Diagnostic::new(message).help(format!("write `{middle} ± {half}`"))
+            }
+            (Some(RATIO), [true, _]) => Diagnostic::new(two_ways).help("write `%` behind both numbers, or behind none"),
+            (None | Some(RATIO), _) => {
+                let both = if is_ratio { format!(", or {} in percent", written(share, "%")) } else { String::new() };
+                let help = format!(
+                    "write {of_it} for {share} % of {number}, {} for {share} % of 1{both}",
+                    written(share / 100.0, "")
+                );
+                Diagnostic::new(two_ways).help(help)
+            }
+            (Some(dimension), [false, true]) => {
+                let message =
+                    format!("`{behind}` behind the sign of {shown} is a ratio; {} is expected", self.expected());
+                let example = words::example_like(before, dimension, self.minimum, self.maximum, self.example);
+                let unit =
+                    if unit.is_empty() { example.as_deref().map_or("", |text| split_quantity(text).1) } else { unit };
+                Diagnostic::new(message).help(format!("write {}", written(number.abs() * share / 100.0, unit)))
+            }
+            _ => return None,
+        })
+    }
+
+    /// A unit behind both numbers with which the middle is far from what is usual here, and without which it is near.
+    fn of_one_unit(&self, before: &str, behind: &str, shown: &str) -> Option<Diagnostic> {
+        let unit = split_quantity(behind).1;
+        let usual =
+            self.example.map(|text| split_quantity(text).1).filter(|usual| !usual.is_empty() && *usual != unit)?;
+        if unit.is_empty() || !split_quantity(before).1.is_empty() {
+            return None;
+        }
+        let is_own = parse_quantity(behind).is_ok_and(|read| Some(read.dimension) == self.dimension);
+        let [as_written, as_usual] = [unit, usual].map(|unit| format!("{before} {unit}"));
+        if !is_own || self.distance(&as_written) < FAR.ln() || self.distance(&as_usual) > NEAR.ln() {
+            return None;
+        }
+        let message =
+            format!("the unit of {shown} is that of both numbers, so {} would be `{as_written}`", quote(self.name));
+        Some(
+            Diagnostic::new(message)
+                .help(format!("write `{as_usual} ± {behind}`, or `{as_written} ± {behind}` if it is")),
+        )
     }
 
     /// That an interval stands where none can.
@@ -147,6 +257,7 @@ mod tests {
             ("5.05 ± 0.005 mm", Some("5.05 mm")),
             ("5.05 mm ± 5 um", Some("5.05 mm")),
             ("5 % ± 0.5 %", Some("5 %")),
+            (r"0.504 \pm 0.0005", Some("0.504")),
             ("5.05 mm", None),
             ("1e+3", None),
         ] {

@@ -15,7 +15,7 @@ const NUMBER: &str = r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?";
 const POSITIVE: &str = r"\+?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?";
 
 /// Between the middle and half the width of a number that was printed rounded.
-const OFF_BY: &str = r" *(±|\+/?-) *";
+const OFF_BY: &str = r" *(±|\+/?-|\\pm) *";
 
 /// A name as a heading: `Young's modulus` of `youngs_modulus`.
 pub fn title(name: &str) -> String {

@@ -10,7 +10,7 @@ fn said(text: &str) -> Vec<String> {
         Content::Sequence(items) => format!("{:?}", items.iter().map(Node::describe).collect::<Vec<_>>()),
         Content::Mapping(_) => "a mapping".to_owned(),
     };
-    fields(text).unwrap().iter().map(|pair| format!("{}: {}", pair.key, shown(&pair.node))).collect()
+    fields(text).unwrap().0.iter().map(|pair| format!("{}: {}", pair.key, shown(&pair.node))).collect()
 }
 
 /// Line, column and what is said.
@@ -36,6 +36,16 @@ fn columns_are_lists_and_first_lines_are_values() {
 }
 
 #[test]
+fn a_list_stands_at_the_last_column_of_its_name() {
+    let (pairs, header) = fields("# one: 1\nx [mm], x [mm], y [um]\n4,5,-1\n").unwrap();
+    let at = |name: &str| {
+        pairs.iter().find(|pair| pair.key == name).map(|pair| (pair.node.place.line, pair.node.place.column))
+    };
+    assert_eq!((at("x"), at("y")), (Some((2, 9)), Some((2, 17))));
+    assert_eq!((header.line, header.column), (2, 1));
+}
+
+#[test]
 fn what_is_no_table_is_refused_at_its_line() {
     assert_eq!(refused(""), "1:1: this file has no columns");
     assert_eq!(refused("4,1\n"), "1:1: `4` stands where the name of a column is expected");
@@ -46,6 +56,7 @@ fn what_is_no_table_is_refused_at_its_line() {
     assert_eq!(refused("x [mm], y [um]\n4,1,-3,5\n"), "2:1: this line has 4 values, and there are 2 columns");
     assert_eq!(refused("x [mm]; y [um]\n4; \n"), "2:3: a value of `y` is missing");
     assert_eq!(refused("# x: 4\nx [mm]\n4\n"), "2:1: `x` stands here a second time");
+    assert_eq!(refused("# x: [4 mm]\nx [mm]\n4\n"), "2:1: `x` stands here a second time");
     assert_eq!(refused("# z:\nx [mm]\n4\n"), "1:3: `z` has no value");
     assert_eq!(refused("# z: [1\nx [mm]\n4\n"), "1:6: `[` is opened and never closed");
 }

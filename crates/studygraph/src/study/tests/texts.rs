@@ -30,6 +30,10 @@ const TEXTS: &[(&str, &str)] = &[
     ("study: a\ntitle: \"b\n", "2:8: a quote is opened and never closed"),
     ("study: \"a\ntitle: b # c\"\nstages: {}\n", "1:8: a quote is opened and not closed in its line"),
     ("stages:\n  a:\n    kind: \"it's \\\"b\n", "3:11: a quote is opened and never closed"),
+    (
+        r#"a: "1 \pm 2""#,
+        "1:4: a `\\` in double quotes begins an escape, and there is none of this letter\n  help: write the text in single quotes, or without any",
+    ),
     ("a: [b", "1:4: `[` is opened and never closed"),
     ("a: *b", "1:4: this alias has no anchor (`&name`) before it"),
     ("a: &a [*a]", "1:8: this alias stands inside the value it stands for"),

@@ -9,6 +9,7 @@ use std::fmt::Debug;
 
 use super::curve::{Curve, OutlinePart, Segment};
 use crate::gear::geometry::Gear;
+use crate::gear::geometry::error::shown::beside;
 use crate::gear::geometry::error::{Degrees, GeometryError, Millimetres, Parameter, Problem};
 use crate::gear::geometry::involute::involute;
 use crate::numeric::crossing;
@@ -224,12 +225,12 @@ impl Top<'_> {
     }
 
     fn check_angle(&self, angle: f64) -> Result<(), GeometryError> {
-        let flat = self.gear.specification.pressure_angle;
-        if angle <= flat {
+        let [angle, flat] = [angle, self.gear.specification.pressure_angle].map(Degrees);
+        if angle.0 <= flat.0 {
             return Err(Problem::OutOfRange {
                 parameter: Parameter::TipAngle,
-                found: Degrees(angle).to_string(),
-                range: format!("above the pressure angle, {}", Degrees(flat)),
+                found: beside(&angle, &flat),
+                range: format!("above the pressure angle, {}", beside(&flat, &angle)),
             }
             .into());
         }

@@ -102,7 +102,8 @@ fn along(stated: &Measured) -> Vec<(&'static str, &[f64])> {
 }
 
 pub(super) fn no_places() -> Diagnostic {
-    Diagnostic::new("nothing says where the deviations were measured").help(
+    let wrong = Diagnostic::new("nothing says where the deviations were measured").of(Measured::NAMES.deviations);
+    wrong.help(
         "along the profile `roll_lengths`, `roll_angles` or `diameters` are needed, across the face `face_positions`, and \
          both of them for a grid",
     )
@@ -122,6 +123,12 @@ fn ascending(name: &'static str, places: &[f64]) -> Result<(), Diagnostic> {
                 .help("turn it round, deviations too: from the root to the tip, or to larger z"));
         }
         let (one, other) = (places[at], places[at + 1]);
+        if at > 0 && other <= places[0] {
+            let message = format!("`{name}` starts again at its point {}; points are in ascending order", at + 2);
+            return Err(Diagnostic::new(message)
+                .of(name)
+                .help("columns and lines that follow each other are one list: keep one"));
+        }
         #[allow(clippy::float_cmp)] // the same point twice, not one nearby
         let is = if one == other { "is the same as the one before it" } else { "is not above the one before it" };
         let message = format!("point {} of `{name}` {is}; points are in ascending order", at + 2);
