@@ -4,14 +4,12 @@
 //! Names of stages are gathered and checked later, when all stages are known. Must not know: what any field means.
 
 use super::document::{Content, KeyValue, Node, nothing, parse};
-use super::files;
-use super::notation;
 use super::overrides::{self, Stages};
 use super::quantity::interval::Interval;
 use super::quantity::{Measure, any_quantity};
-use super::unknown;
 use super::varied;
 use super::words::{self, alternatives, quote};
+use super::{files, notation, unknown};
 use declare::error::{Diagnostic, Place, suggest};
 use declare::parameter::{Field, Member, Presence, Shape, Span};
 use declare::record::{PlacedValue, Record, Value, Variant};

@@ -18,6 +18,11 @@ const KIND: &[u8] = b"\",\n   \"kind\": \"";
 const WARNINGS: &[u8] = b"\n   \"warnings\": [";
 const OMISSION: &[u8] = b"\n    {\"what\": ";
 const BETWEEN: &[u8] = b"\n  },\n";
+const STATUS: &[u8] = b"\n   \"status\": \"";
+/// Behind a status.
+const WHY: &[u8] = b"\",\n   \"why\": \"";
+/// What a record says of a run that found the stage's tables.
+const UNCHANGED: &[u8] = b"\n   \"status\": \"hit\",\n   \"why\": \"unchanged\",";
 const END: &[u8] = b"\n ]";
 
 /// A text, and where its parts lie.
@@ -111,8 +116,8 @@ impl<'t> Cut<'t> {
         serde_json::from_slice(&text)
     }
 
-    /// The text with what `other` says besides stages, and with its stages in these places; none where it is not of as many
-    /// stages.
+    /// The text with what `other` says besides stages, and with its stages in these places; the others were found, and are
+    /// unchanged. None where it is not of as many stages.
     ///
     /// # Errors
     /// When it cannot be written as JSON, which cannot be.
@@ -123,11 +128,19 @@ impl<'t> Cut<'t> {
         text.extend_from_slice(&other.text[..other.schemas]);
         text.extend_from_slice(&self.text[self.schemas..self.before()]);
         let mut others = places.iter().enumerate().peekable();
-        let stages = (0..self.len()).map(|place| match others.next_if(|(_, other)| **other == place) {
-            Some((of_other, _)) => other.stage(of_other),
-            None => self.stage(place),
-        });
-        join(&mut text, stages);
+        let status = memmem::Finder::new(STATUS);
+        for place in 0..self.len() {
+            if place > 0 {
+                text.extend_from_slice(b",\n");
+            }
+            match others.next_if(|(_, other)| **other == place) {
+                Some((of_other, _)) => text.extend_from_slice(other.stage(of_other)),
+                None => {
+                    let Some([before, behind]) = around_the_status(self.stage(place), &status) else { return Ok(None) };
+                    [before, UNCHANGED, behind].into_iter().for_each(|part| text.extend_from_slice(part));
+                }
+            }
+        }
         text.extend_from_slice(other.behind());
         Ok(others.next().is_none().then_some(text))
     }
@@ -142,6 +155,15 @@ impl<'t> Cut<'t> {
         };
         Cut::of(&text).is_some_and(alike)
     }
+}
+
+/// What stands in a record before and behind the lines that say what its last run did.
+fn around_the_status<'r>(record: &'r [u8], status: &memmem::Finder) -> Option<[&'r [u8]; 2]> {
+    let at = status.find(record)?;
+    let behind = &record[at + STATUS.len()..];
+    let why = behind[memchr::memchr(b'"', behind)?..].strip_prefix(WHY)?;
+    // No text in a manifest has a line of its own.
+    Some([&record[..at], &why[memchr::memchr(b'\n', why)?..]])
 }
 
 fn join<'t>(text: &mut Vec<u8>, stages: impl Iterator<Item = &'t [u8]>) {
@@ -203,8 +225,9 @@ mod tests {
         let cut = Cut::of(&text).unwrap();
         let mut whole = Manifest { title: "another".to_owned(), ..manifest.clone() };
         whole.files.truncate(1);
-        for place in [1, 3] {
-            whole.stages[place].why = "config changed".to_owned();
+        for (place, stage) in whole.stages.iter_mut().enumerate() {
+            let (status, why) = if place % 2 == 1 { ("ran", "config changed") } else { ("hit", "unchanged") };
+            (stage.status, stage.why) = (status.to_owned(), why.to_owned());
         }
         let own = Manifest { stages: [1, 3].map(|place| whole.stages[place].clone()).to_vec(), ..whole.clone() };
         assert_eq!(cut.text_with(&own, &[1, 3]).unwrap().unwrap(), whole.text().unwrap());

@@ -113,21 +113,6 @@ pub(super) fn say_the_same(one: &Manifest, other: &Manifest) -> bool {
         && one.stages.iter().zip(&other.stages).all(|(one, other)| essence_of_stage(one) == essence_of_stage(other))
 }
 
-/// Leaves the records of stages that say nothing new as they were: a difference between two commits is what changed, not what
-/// was looked up again.
-pub(super) fn keep_records(old: Vec<StageRecord>, new: &mut [StageRecord]) {
-    let places: HashMap<String, usize> =
-        old.iter().zip(0..).map(|(stage, place)| (stage.name.clone(), place)).collect();
-    let mut old: Vec<Option<StageRecord>> = old.into_iter().map(Some).collect();
-    for stage in new {
-        let earlier = places.get(&stage.name).and_then(|&place| old[place].take());
-        let same = |earlier: &StageRecord| essence_of_stage(earlier) == essence_of_stage(stage);
-        if let Some(earlier) = earlier.filter(same) {
-            *stage = earlier;
-        }
-    }
-}
-
 // Every field is named, so that a new one has to be thought of; nothing is copied, since a run with nothing to do comes by.
 fn essence(manifest: &Manifest) -> impl PartialEq {
     let Manifest {
@@ -150,7 +135,7 @@ fn essence(manifest: &Manifest) -> impl PartialEq {
     (format, study, title, seed, source, study_digest, tolerances)
 }
 
-pub(super) fn essence_of_stage(stage: &StageRecord) -> impl PartialEq {
+fn essence_of_stage(stage: &StageRecord) -> impl PartialEq {
     let StageRecord { name, kind, version, keys, config, status, why, seconds: _, work, warnings, left_out, tables } =
         stage;
     // What a finished stage did this time is not part of what it gave.

@@ -12,7 +12,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::sync::Arc;
 
-use super::changes::{compare, keep_records, say_the_same, with_earlier_tables};
+use super::changes::{compare, say_the_same, with_earlier_tables};
 use super::{Changes, FileState, Folder, Known, MANIFEST, held_text, here, is_drawn, split};
 use crate::store::bundle::{self, is_bundle};
 use crate::store::error::StoreError;
@@ -235,9 +235,7 @@ impl Folder {
         }
         let stands = old.as_ref().is_some_and(|old| say_the_same(&old.manifest, &new));
         // Thousands of them are a fifth of what is held, and nobody asks for them from here on.
-        if let Some(old) = &mut old {
-            keep_records(old.take_stages(), &mut new.stages);
-        }
+        let stages = old.as_mut().map(Known::take_stages).filter(|_| stands);
         if changes.hdf5 {
             (source.next)(&self.hdf5_file())?;
             self.put_hdf5(&mut listed, &new)?;
@@ -245,13 +243,13 @@ impl Folder {
             listed.keep(old.as_ref(), &self.hdf5_file(), None);
         }
         new.files.clear();
-        new = match (old.as_ref().filter(|_| stands), facts) {
+        new = match (old.as_ref().zip(stages), facts) {
             // Files that were missing are there again, and nothing else is new: the record of who computed it stands.
-            (Some(old), _) => {
+            (Some((old, stages)), _) => {
                 let Manifest { program, study_folder, machine, written, seconds, .. } = &old.manifest;
                 let (program, study_folder) = (program.clone(), study_folder.clone());
                 let (machine, written) = (machine.clone(), written.clone());
-                Manifest { program, study_folder, machine, written, seconds: *seconds, ..new }
+                Manifest { program, study_folder, machine, written, seconds: *seconds, stages, ..new }
             }
             (_, Some(facts)) => {
                 let Facts { program, study_folder, machine, written } = facts();

@@ -9,7 +9,6 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::changes::essence_of_stage;
 use super::publish::{Listed, unwritten};
 use super::{Changes, Folder, Known, MANIFEST, Published, Source, is_drawn};
 use crate::store::bundle::{self, Rows, is_bundle};
@@ -197,8 +196,7 @@ fn placed(cut: &Cut, mut part: Manifest) -> Option<(Vec<usize>, Manifest)> {
     Some((own, Manifest { stages, ..part }))
 }
 
-/// What a run of some stages came to, its tables in the files that theirs are in; records that say nothing new stand. None
-/// where other tables come of a stage, or other files, or too many rows.
+/// What a run of some stages came to, its tables in the files that theirs are in. None where other tables come of a stage, or other files, or too many rows.
 fn taking_over(old: &Manifest, mut new: Manifest) -> Option<Manifest> {
     for (old, new) in old.stages.iter().zip(&mut new.stages) {
         if old.kind != new.kind || !old.is_complete() {
@@ -223,9 +221,6 @@ fn taking_over(old: &Manifest, mut new: Manifest) -> Option<Manifest> {
             if old != new && !is_plain {
                 return None;
             }
-        }
-        if essence_of_stage(old) == essence_of_stage(new) {
-            *new = old.clone();
         }
     }
     Some(new)
@@ -260,8 +255,9 @@ fn shown(cut: &Cut, own: &[usize], new: &Manifest, reader: &str) -> Result<Manif
     }
     let mut stages = cut.read(places.iter().copied())?.stages;
     for (stage, place) in stages.iter_mut().zip(places) {
-        if let Ok(at) = own.binary_search(&place) {
-            stage.clone_from(&new.stages[at]);
+        match own.binary_search(&place) {
+            Ok(at) => stage.clone_from(&new.stages[at]),
+            Err(_) => (stage.status, stage.why) = ("hit".to_owned(), "unchanged".to_owned()),
         }
     }
     Ok(Manifest { stages, more, ..new.without_stages() })
