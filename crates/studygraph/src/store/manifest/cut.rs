@@ -137,7 +137,9 @@ impl<'t> Cut<'t> {
                 Some((of_other, _)) => text.extend_from_slice(other.stage(of_other)),
                 None => {
                     let Some([before, behind]) = around_the_status(self.stage(place), &status) else { return Ok(None) };
-                    [before, UNCHANGED, behind].into_iter().for_each(|part| text.extend_from_slice(part));
+                    for part in [before, UNCHANGED, behind] {
+                        text.extend_from_slice(part);
+                    }
                 }
             }
         }
