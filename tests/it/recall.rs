@@ -122,9 +122,25 @@ impl Book {
     /// One edit; some make no study of it.
     fn edit(&mut self, generator: &mut impl Rng) {
         let any = below(generator, self.sheets.len());
-        match below(generator, 36) {
+        match below(generator, 40) {
+            // Another name of a design, another number of them: all is written.
+            36 => {
+                if let Some(sheet) = self.any(generator, "modification") {
+                    sheet.text = sheet.text.replace("{ a: [", "{ b: [");
+                }
+            }
+            37 | 38 => {
+                if let Some(sheet) = self.any(generator, "modification") {
+                    sheet.text = sheet.text.replace("designs: { ", "designs: { c: [], ");
+                }
+            }
+            39 => {
+                if let Some(sheet) = self.any(generator, "report") {
+                    sheet.text = sheet.text.replace("value: 1.6", "value: 1.7");
+                }
+            }
             // Most edits are of one amount.
-            20.. => {
+            20..=35 => {
                 self.next += 1;
                 let amount = self.next;
                 if let Some(sheet) = self.any(generator, "modification") {

@@ -27,7 +27,7 @@ use crate::store::cache::Cache;
 use crate::store::entry::StoredTable;
 use crate::store::error::StoreError;
 use crate::store::facts::Facts;
-use crate::store::results::{self, Draw, Folder, Published, Source};
+use crate::store::results::{self, Draw, Folder, Published, Source, Spliced};
 use crate::study::Study;
 use crate::table::data::Table;
 use declare::error::Diagnostic;
@@ -104,14 +104,23 @@ pub fn run_part(
 ) -> Result<Option<(Outcome, Published)>, RunError> {
     let Surroundings { cache, observer, stop, folder, .. } = around;
     let outcome = execute(&part.study, cache, &part.options, observer, stop)?;
-    let of_part = results::Part {
-        manifest: outcome.manifest(&part.study),
-        stages: part.stages(),
-        reader: part.study.program.pictures.reader,
-        is_as_before: &|| part.note.holds_in(folder.path()),
-    };
-    let published =
-        publishing(&part.study, &outcome, options, around, |facts, source| folder.publish_part(of_part, facts, source));
+    let manifest = outcome.manifest(&part.study);
+    let published = publishing(&part.study, &outcome, options, around, |facts, source| {
+        let of_part = results::Part {
+            manifest: manifest.clone(),
+            stages: part.stages(),
+            reader: part.study.program.pictures.reader,
+            is_as_before: &|| part.note.holds_in(folder.path()),
+        };
+        match folder.publish_part(of_part, facts, source)? {
+            Spliced::Published(published) => Ok(Some(*published)),
+            // Other tables, rows or words: all is written, of stages that were not read what is there.
+            Spliced::Refused(earlier) => {
+                let whole = earlier.and_then(|earlier| part.whole(manifest, *earlier));
+                whole.map(|whole| folder.publish(whole, facts, source)).transpose()
+            }
+        }
+    });
     // What else there is to be said a run of all stages says, and makes good.
     if let Err(StoreError::Damaged { .. } | StoreError::Format { .. }) | Ok(None) = published {
         return Ok(None);

@@ -6,7 +6,7 @@
 //! lines say, on the stages that they name, and on what its readers ask of it; names are looked for as words, be they meant so
 //! or not. Whatever else changed, or is not plain, is a matter of reading the whole study. Must not know: how a run publishes.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +16,7 @@ use super::note::{self, Note, Where};
 use super::options::{Options, Wanted};
 use crate::program::Program;
 use crate::stage::Want;
+use crate::store::manifest::{Manifest, StageRecord};
 use crate::study::blocks::{Block, Blocks, mentions};
 use crate::study::{MOST_VALUES, Study, Unread, load_part, text_of};
 use declare::digest::{Digest, Writer};
@@ -298,6 +299,21 @@ impl Part {
     #[must_use]
     pub fn recalled(&self) -> &Recalled {
         &self.recalled
+    }
+
+    /// The manifest of all stages, from that of those that were run and that of the last run; none where that has others.
+    #[must_use]
+    pub fn whole(&self, part: Manifest, earlier: Manifest) -> Option<Manifest> {
+        let names = self.recalled.stages.iter().map(|stage| stage.name.as_str());
+        let known: HashSet<&str> = earlier.stages.iter().map(|stage| stage.name.as_str()).collect();
+        if known.len() != self.stages() || !names.into_iter().all(|name| known.contains(name)) {
+            return None;
+        }
+        let mut own: HashMap<String, StageRecord> =
+            part.stages.into_iter().map(|stage| (stage.name.clone(), stage)).collect();
+        let stages =
+            earlier.stages.into_iter().map(|stage| own.remove(&stage.name).unwrap_or_else(|| stage.unchanged()));
+        Some(Manifest { stages: stages.collect(), ..part })
     }
 
     /// How many stages the study has, read or not.

@@ -24,7 +24,7 @@ pub use known::{FileState, Known};
 #[cfg(feature = "hdf5")]
 pub use publish::hdf5_bytes;
 pub use publish::{Bytes, Draw, Drawn, Pieces, Published, Source, Tables};
-pub use splice::Part;
+pub use splice::{Part, Spliced};
 
 use super::bundle::{Opened, is_bundle};
 use super::error::StoreError;

@@ -90,6 +90,12 @@ impl StageRecord {
         matches!(self.status.as_str(), "hit" | "ran")
     }
 
+    /// What it says after a run that found its tables.
+    #[must_use]
+    pub fn unchanged(self) -> Self {
+        Self { status: "hit".to_owned(), why: "unchanged".to_owned(), ..self }
+    }
+
     /// Whether somebody is told of it.
     pub(in crate::store) fn is_told(&self) -> bool {
         !self.is_complete() || !self.warnings.is_empty()

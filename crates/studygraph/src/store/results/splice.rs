@@ -33,6 +33,13 @@ pub struct Part<'a> {
     pub is_as_before: &'a dyn Fn() -> bool,
 }
 
+/// What came of publishing a part.
+pub enum Spliced {
+    Published(Box<Published>),
+    /// All must be written: with what the folder says of all stages, where it is as the last run left it.
+    Refused(Option<Box<Manifest>>),
+}
+
 /// A file of tables before and after.
 struct Change {
     /// The first that changed, and the group that HDF5 has its tables in.
@@ -43,7 +50,7 @@ struct Change {
 }
 
 impl Folder {
-    /// Brings the folder up to date; none where a run of all stages must.
+    /// Brings the folder up to date.
     ///
     /// # Errors
     /// As [`Folder::publish`].
@@ -52,11 +59,25 @@ impl Folder {
         part: Part<'_>,
         facts: impl FnOnce() -> Facts,
         source: Source<'_>,
-    ) -> Result<Option<Published>, StoreError> {
+    ) -> Result<Spliced, StoreError> {
         let _lock = self.lock_while(source.waits)?;
         if !(part.is_as_before)() {
-            return Ok(None);
+            return Ok(Spliced::Refused(None));
         }
+        let published = self.splice(part, facts, source)?;
+        Ok(published.map_or_else(
+            || Spliced::Refused(self.manifest().map(Box::new)),
+            |published| Spliced::Published(Box::new(published)),
+        ))
+    }
+
+    /// The folder is locked. None where all must be written, and nothing was touched.
+    fn splice(
+        &self,
+        part: Part<'_>,
+        facts: impl FnOnce() -> Facts,
+        source: Source<'_>,
+    ) -> Result<Option<Published>, StoreError> {
         let path = self.path().join(MANIFEST);
         let text = file::read(&path, file::MOST_MANIFEST).map_err(StoreError::io("read", &path))?;
         let Some(cut) = Cut::of(&text).filter(|cut| cut.len() == part.stages) else { return Ok(None) };
@@ -257,7 +278,7 @@ fn shown(cut: &Cut, own: &[usize], new: &Manifest, reader: &str) -> Result<Manif
     for (stage, place) in stages.iter_mut().zip(places) {
         match own.binary_search(&place) {
             Ok(at) => stage.clone_from(&new.stages[at]),
-            Err(_) => (stage.status, stage.why) = ("hit".to_owned(), "unchanged".to_owned()),
+            Err(_) => *stage = stage.clone().unchanged(),
         }
     }
     Ok(Manifest { stages, more, ..new.without_stages() })
