@@ -4,6 +4,8 @@
 //! off by fades by 2 − √3 from point to point. Source: de Boor, A Practical Guide to Splines, chapter IV. Must not know: what
 //! is interpolated.
 
+mod bridged;
+
 /// A piecewise cubic with two continuous derivatives between the first and the last of its knots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {

@@ -1,4 +1,4 @@
-//! How far splines bend back, and the bridges over their valleys.
+//! How far splines bend back, and what is bridged of their valleys.
 //!
 //! Must not know: the other flank.
 
@@ -23,9 +23,12 @@ impl Outline<'_> {
             return Some(least);
         }
         let (from, to) = (self.facing.start, self.facing.end);
-        let [_, rate] = self.rolls;
+        let [start, rate] = self.rolls;
+        // The share of the path that lies before a roll angle.
+        let per_roll = 1.0 / (rate * (to - from));
+        let before = -(start + rate * from) * per_roll;
         let mut put = |roll: f64, bend: f64| {
-            let share = (self.position(roll) - from) / (to - from);
+            let share = before + roll * per_roll;
             if (0.0..=1.0).contains(&share) {
                 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a share
                 let part = ((share * PARTS as f64) as usize).min(PARTS - 1);
@@ -52,8 +55,31 @@ impl Outline<'_> {
     }
 
     /// Bridges what bends back by more than `bends` (at equal parts of the path, not below 0) allow, as something that is bent the other way
-    /// by as much would that is laid over it: the lower hull of the depths and of what bends so. The spline through that is smooth.
+    /// by as much would that is laid over it.
     pub(in super::super) fn bridge(&mut self, bends: &[f64; PARTS]) {
+        let (from, to) = (self.facing.start, self.facing.end);
+        let [_, rate] = self.rolls;
+        let (mut range, mut bends) = ([from, to].map(|place| self.roll(place)), bends.map(|bend| bend / (rate * rate)));
+        if self.is_point {
+            range.reverse();
+            bends.reverse();
+        }
+        let finest = (range[1] - range[0]) / FINEST as f64;
+        // Where it ends on the path and is held, its slope has a step, which a spline through all depths has not.
+        let closest = CLOSEST * finest;
+        let covers = |spline: &Spline| spline.ends()[0] <= range[0] + closest && spline.ends()[1] >= range[1] - closest;
+        let bridged = match &self.spline {
+            Some(told) if covers(told.spline()) => told.spline().bridged(range, &bends, finest),
+            _ => self.through_depths().bridged(range, &bends, finest),
+        };
+        self.spline = Some(Told::Bridged(Arc::new(bridged)));
+        for piece in &mut self.pieces {
+            *piece = Piece { shape: Convexity::Convex, is_held: false, quadratic: None };
+        }
+    }
+
+    /// The spline over the roll angle through the depths at all knots of all parts and between them.
+    fn through_depths(&self) -> Spline {
         let (from, to) = (self.facing.start, self.facing.end);
         let knots = self.parts.iter().flat_map(Section::knots).map(|roll| self.position(*roll));
         let step = (to - from) / FINEST as f64;
@@ -62,55 +88,11 @@ impl Outline<'_> {
         let mut places: Vec<f64> = inner.chain(between).chain(self.cuts.iter().copied()).collect();
         places.sort_by(f64::total_cmp);
         places.dedup_by(|next, kept| *next - *kept <= CLOSEST * step);
-        // Bent by `bends`: integrated twice, from place to place.
-        let (mut slope, mut raised) = (0.0, 0.0);
-        let mut lifts = Vec::with_capacity(places.len());
-        for (index, place) in places.iter().enumerate() {
-            let width = if index > 0 { place - places[index - 1] } else { 0.0 };
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a share of the path
-            let part = (((place - from) / (to - from) * PARTS as f64) as usize).min(PARTS - 1);
-            raised += width * (slope + 0.5 * width * bends[part]);
-            slope += width * bends[part];
-            lifts.push(raised);
-        }
-        let depths: Vec<f64> = places.iter().zip(&lifts).map(|(place, lift)| self.sum(*place) + lift).collect();
-        let hull = lower_hull(&places, &depths);
-        let mut at = 0;
-        let mut points: Vec<[f64; 2]> = Vec::with_capacity(places.len());
-        for (index, place) in places.iter().enumerate() {
-            if index > hull[at + 1] {
-                at += 1;
-            }
-            let [one, other] = [hull[at], hull[at + 1]];
-            let share = (place - places[one]) / (places[other] - places[one]);
-            let bridge = depths[one] + share * (depths[other] - depths[one]);
-            points.push([self.roll(*place), bridge - lifts[index]]);
-        }
         if self.is_point {
-            points.reverse();
+            places.reverse();
         }
-        let [rolls, values]: [Vec<f64>; 2] = [0, 1].map(|of| points.iter().map(|point| point[of]).collect());
-        self.spline = Some(Told::Bridged(Arc::new(Spline::new(&rolls, &values))));
-        for piece in &mut self.pieces {
-            *piece = Piece { shape: Convexity::Convex, is_held: false, quadratic: None };
-        }
+        let rolls: Vec<f64> = places.iter().map(|place| self.roll(*place)).collect();
+        let depths: Vec<f64> = places.iter().map(|place| self.sum(*place)).collect();
+        Spline::new(&rolls, &depths)
     }
-}
-
-/// The places, by their number, of the lower convex hull of points whose places ascend; the first and the last are among them.
-fn lower_hull(places: &[f64], heights: &[f64]) -> Vec<usize> {
-    let mut hull: Vec<usize> = Vec::with_capacity(places.len());
-    for next in 0..places.len() {
-        while let [.., one, other] = hull[..] {
-            let rise = |from: usize, to: usize| (heights[to] - heights[from]) * (places[next] - places[one]);
-            let run = |from: usize, to: usize| places[to] - places[from];
-            // Below the line from `one` to `next`.
-            if rise(one, other) < rise(one, next) / run(one, next) * run(one, other) {
-                break;
-            }
-            hull.pop();
-        }
-        hull.push(next);
-    }
-    hull
 }
