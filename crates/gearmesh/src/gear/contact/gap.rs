@@ -200,7 +200,11 @@ impl<'a> Gaps<'a> {
             return known;
         }
         let (start, end) = (facing.start, facing.end);
-        let changes = if self.is_convex { self.convex_changes(&known) } else { None };
+        let mut changes = if self.is_convex { self.convex_changes(&known) } else { None };
+        if self.is_convex && (point.is_bridged() || flank.is_bridged()) {
+            // Crests are no breaks, and it is none either where the contact goes over to another side of the line of action.
+            changes = changes.or(Some(Vec::new()));
+        }
         let inside = changes.is_some();
         let mut found = changes.unwrap_or_default();
         found.retain(|s| *s > window.0 && *s < window.1);

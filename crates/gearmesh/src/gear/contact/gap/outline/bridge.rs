@@ -54,6 +54,11 @@ impl Outline<'_> {
         }
     }
 
+    /// Whether a valley of it is bridged.
+    pub(in super::super) fn is_bridged(&self) -> bool {
+        matches!(self.spline, Some(Told::Bridged(_)))
+    }
+
     /// Bridges what bends back by more than `bends` (at equal parts of the path, not below 0) allow, as something that is bent the other way
     /// by as much would that is laid over it.
     pub(in super::super) fn bridge(&mut self, bends: &[f64; PARTS]) {
