@@ -177,11 +177,9 @@ fn locks_of_the_dead_are_taken_over_without_a_word() {
         orders.extend([("SHIM_AT", at.to_string()), ("SHIM_ERROR", "-9".to_owned())]);
         let killed = place.run(TINY, &orders);
         left += usize::from(lock.exists());
-        // Killed before it had written its name: nobody can tell that it is dead, and it is waited for.
-        let is_nameless = fs::read(&lock).is_ok_and(|text| text.is_empty());
         let ended = place.run(TINY, &host(&place, "one"));
         assert!(
-            ended.status.success() && (is_nameless || ended.error.is_empty()),
+            ended.status.success() && ended.error.is_empty(),
             "killed ({}) at {at}: {}",
             killed.status,
             ended.error

@@ -132,6 +132,12 @@ impl Trace {
                     let change = Change::Give { name: to.to_owned(), file, instead_of: Some(from.to_owned()) };
                     self.steps.push(named(change, to));
                 }
+                ["link", from, to] => {
+                    let file = names[from];
+                    names.insert(to.to_owned(), file);
+                    let change = Change::Give { name: to.to_owned(), file, instead_of: None };
+                    self.steps.push(named(change, to));
+                }
                 ["unlink", name] => {
                     names.remove(name).unwrap();
                     self.steps.push(named(Change::Take { name: name.to_owned() }, name));

@@ -73,6 +73,18 @@ pub fn write_with<T>(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<T>)
     write_by(path, Durability::Synced, |file| fill(file).map_err(StoreError::io("write", path)))
 }
 
+/// Gives a name to a file with these bytes, unless it is taken: the file is there whole, or not at all.
+///
+/// # Errors
+/// That the name is taken; what the system says, not all of which know links.
+pub fn link(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let (mut file, partial) = begin(path.parent().unwrap_or(Path::new("")))?;
+    let linked = file.write_all(bytes).and_then(|()| fs::hard_link(&partial, path));
+    // A leftover that cannot be removed does no harm.
+    let _ = fs::remove_file(&partial);
+    linked
+}
+
 /// A new file under a temporary name that anybody may read once it has its own.
 fn begin(folder: &Path) -> io::Result<(File, PathBuf)> {
     static NUMBER: AtomicU64 = AtomicU64::new(0);

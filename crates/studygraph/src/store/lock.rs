@@ -176,8 +176,14 @@ fn own(path: &Path, held: bool, wait: &mut Wait<'_>) -> Result<Option<(PathBuf, 
     }
 }
 
+/// With its owner's name in it from the first, where the disk knows links: whoever finds a lock without a name cannot tell
+/// whether its owner lives, and waits.
 fn make(path: &Path, me: &Owner) -> io::Result<()> {
     let text = serde_json::to_string(me).map_err(io::Error::other)? + "\n";
+    match file::link(path, text.as_bytes()) {
+        Err(error) if error.kind() != io::ErrorKind::AlreadyExists => {}
+        made => return made,
+    }
     let mut file = File::options().write(true).create_new(true).open(path)?;
     file.write_all(text.as_bytes()).inspect_err(|_| {
         // Half a name says nothing; the first error is the one to tell.
