@@ -185,18 +185,7 @@ pub fn html(
     let parts = parts.iter().map(|part| part_view(part, &inputs)).collect::<Result<Vec<_>, _>>()?;
     let records = records::records(manifest, tables)?;
     let view = View {
-        manifest: Manifest {
-            study: manifest.study.clone(),
-            title: manifest.title.clone(),
-            seed: manifest.seed,
-            source: manifest.source.clone(),
-            study_digest: manifest.study_digest.clone(),
-            program: manifest.program.clone(),
-            study_folder: manifest.study_folder.clone(),
-            machine: manifest.machine.clone(),
-            written: manifest.written.clone(),
-            ..Manifest::default()
-        },
+        manifest: Manifest { files: Vec::new(), ..manifest.without_stages() },
         counts,
         total,
         attention,

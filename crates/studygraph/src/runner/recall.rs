@@ -162,18 +162,9 @@ impl Recalled {
 
     /// Whether a stage reads from no other ones than its lines lead to.
     fn names_what_it_reads(&self, place: usize) -> bool {
-        let stage = &self.stages[place];
-        let is_led_to = |read: &u32| {
-            let mut met: BTreeSet<u32> = BTreeSet::new();
-            let mut open = stage.mentions.clone();
-            while let Some(next) = open.pop() {
-                if met.insert(next) {
-                    open.extend(&self.stages[next as usize].mentions);
-                }
-            }
-            met.contains(read)
-        };
-        stage.reads.iter().all(|read| stage.mentions.contains(read) || is_led_to(read))
+        let mentions = |place: usize| self.stages[place].mentions.iter().map(|&other| other as usize);
+        let led_to = reached(mentions(place).collect(), self.stages.len(), mentions);
+        self.stages[place].reads.iter().all(|&read| led_to.contains(&(read as usize)))
     }
 
     /// The places of the stages that must be read: what changed, whatever speaks of it, and what all of these speak of, to the

@@ -62,7 +62,8 @@ impl Manifest {
     }
 
     /// What it says besides stages.
-    pub(in crate::store) fn without_stages(&self) -> Self {
+    #[must_use]
+    pub fn without_stages(&self) -> Self {
         Self {
             format: self.format,
             study: self.study.clone(),

@@ -4,7 +4,7 @@
 
 use std::collections::HashMap;
 
-use super::{FileState, Folder, Known, Source, split};
+use super::{FileState, Folder, Known, Source};
 use crate::store::bundle::{self, Rows, is_bundle};
 use crate::store::error::StoreError;
 use crate::store::manifest::TableRecord;
@@ -26,16 +26,9 @@ impl Folder {
             earlier.filter(|table| table.table() == own).map(|table| (table.stage(), table)).collect();
         let whole = old.and_then(|old| self.as_written(old, file));
         let table = |record: &TableRecord, kept: Option<&TableRecord>| {
-            let (stage, name) = split(&record.name);
             let kept = kept.filter(|kept| old.is_some_and(|old| old.state(&kept.file) == FileState::Intact));
             // What is not what it should be is made again.
-            let kept = kept.and_then(|kept| self.table(kept).ok());
-            match (kept, source.table) {
-                (Some(table), _) => Ok(table),
-                (None, Some(table)) => table(stage, name),
-                (None, None) => parquet::read((source.bytes)(stage, name)?)
-                    .map_err(|problem| StoreError::Format { table: record.name.clone(), problem }),
-            }
+            kept.and_then(|kept| self.table(kept).ok()).map_or_else(|| source.computed(record), Ok)
         };
         let mut ordered = members.to_vec();
         ordered.sort_by_cached_key(|record| record.stage());

@@ -63,6 +63,19 @@ impl<'a> Source<'a> {
     pub fn of(bytes: Bytes<'a>) -> Self {
         Self { bytes, pieces: None, table: None, draw: None, next: &|_| Ok(()), waits: &|_| Ok(()), code: "" }
     }
+
+    /// The table of a record, as it was computed.
+    ///
+    /// # Errors
+    /// When it cannot be had.
+    pub(super) fn computed(&self, record: &TableRecord) -> Result<Table, StoreError> {
+        let (stage, name) = split(&record.name);
+        match self.table {
+            Some(table) => table(stage, name),
+            None => parquet::read((self.bytes)(stage, name)?)
+                .map_err(|problem| StoreError::Format { table: record.name.clone(), problem }),
+        }
+    }
 }
 
 /// A file that was drawn.

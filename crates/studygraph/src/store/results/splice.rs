@@ -134,20 +134,15 @@ impl Folder {
         let mut changes = Vec::new();
         for (old, members) in of_file {
             (source.next)(&old.file)?;
-            let made = |record: &TableRecord| match source.table {
-                Some(table) => table(record.stage(), record.table()),
-                None => parquet::read((source.bytes)(record.stage(), record.table())?)
-                    .map_err(|problem| StoreError::Format { table: record.name.clone(), problem }),
-            };
             let record = members[0].clone();
             let group = record.file.split('.').next().unwrap_or_default().to_owned();
             let before = self.shared(old)?;
             let new = if is_bundle(&record.file) {
-                let own = members.iter().map(|record| Ok((record.stage(), made(record)?)));
+                let own = members.iter().map(|record| Ok((record.stage(), source.computed(record)?)));
                 with_rows(&before, own.collect::<Result<Vec<_>, StoreError>>()?)
                     .map_err(|error| StoreError::Format { table: record.file.clone(), problem: error.to_string() })?
             } else {
-                made(&record)?
+                source.computed(&record)?
             };
             changes.push(Change { record, group, old: before, new });
         }
