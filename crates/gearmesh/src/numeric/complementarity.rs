@@ -19,6 +19,8 @@ pub const MOST_SPRINGS: usize = 6;
 const NEARLY: f64 = 1e-9;
 /// By what a Newton step changes the error at least, where it is of second order.
 const FALL: f64 = 1e-3;
+/// An error from which the next step leads nearer than what is only about right.
+const NEAR: f64 = 1e-2;
 /// How often a step of Newton's method may bring little.
 const STEPS: u32 = 60;
 /// Share of the total that rounding leaves.
@@ -33,6 +35,11 @@ pub type Coupling = [PerSpring; MOST_SPRINGS];
 pub trait Springs {
     /// Load and d load/d penetration: zero for `penetration` ≤ 0, convex and increasing above.
     fn response(&self, spring: usize, penetration: f64) -> (f64, f64);
+
+    /// The same but for a small part of it, for steps that are far from the end; none where it takes no less.
+    fn response_about(&self, _spring: usize, _penetration: f64) -> Option<(f64, f64)> {
+        None
+    }
 }
 
 /// Equilibrium.
@@ -155,11 +162,14 @@ fn newton(
     let count = gaps.len();
     let (mut before, mut left) = (f64::INFINITY, STEPS);
     while left > 0 {
-        let from = found.approach;
+        let (from, mut is_about) = (found.approach, false);
         let mut rises = [0.0; MOST_SPRINGS];
         for (spring, rise) in rises[..count].iter_mut().enumerate() {
             let w = found.penetration[spring];
-            (found.loads[spring], *rise) = if w > 0.0 { springs.response(spring, w) } else { (0.0, 0.0) };
+            let about = if w > 0.0 && before > NEAR { springs.response_about(spring, w) } else { None };
+            is_about |= about.is_some();
+            let exact = || if w > 0.0 { springs.response(spring, w) } else { (0.0, 0.0) };
+            (found.loads[spring], *rise) = about.unwrap_or_else(exact);
         }
         let mut residual = [0.0; MOST_SPRINGS];
         // The largest residual against what it was made of.
@@ -190,7 +200,7 @@ fn newton(
         // Near a singular matrix rounding alone keeps it from getting better.
         let settled = error <= NEARLY && ((error <= FALL * before && !lifts()) || error >= before);
         before = error;
-        if error <= ROUNDING || settled {
+        if !is_about && (error <= ROUNDING || settled) {
             for (load, change) in found.loads.iter_mut().zip(change) {
                 *load = (*load + change).max(0.0);
             }

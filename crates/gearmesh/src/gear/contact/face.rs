@@ -8,6 +8,12 @@
 use crate::gear::modification::Design;
 use crate::numeric::lobatto::Rule;
 
+mod crown;
+mod piece;
+
+pub use crown::LineLaw;
+pub use piece::Piece;
+
 /// The deviation over the common face width of a pair.
 #[derive(Clone, Debug)]
 pub struct Face<'a> {
@@ -28,23 +34,6 @@ enum DeviationForm {
     Quadratic(Vec<Piece>),
     /// Share of the width and deviation of each slice.
     Sliced(Vec<(f64, f64)>),
-}
-
-/// A stretch on which h rises from its lower end: h = base + slope ζ + bend ζ².
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece {
-    base: f64,
-    slope: f64,
-    bend: f64,
-    length: f64,
-    /// 1/`bend`.
-    per_bend: f64,
-    /// h at the upper end less `base`.
-    rise: f64,
-    /// z of the lower end.
-    low: f64,
-    /// How many such stretches there are, over the face width.
-    weight: f64,
 }
 
 impl<'a> Face<'a> {
@@ -262,6 +251,37 @@ impl<'a> Face<'a> {
         }
         (sum, slope)
     }
+
+    /// The mean load per width under a penetration > 0, and its slope, of slices that follow `law`; of crowns by its loads.
+    #[must_use]
+    pub fn carried(&self, penetration: f64, law: &mut impl LineLaw) -> (f64, f64) {
+        let by_loads = self.by_loads(penetration, [&self.rule.nodes, &self.rule.weights], law);
+        by_loads.unwrap_or_else(|| self.summed(penetration, |slice, depth| law.load(slice, depth)))
+    }
+
+    /// The same with some 1e-6 left; none where it takes no less.
+    #[must_use]
+    pub fn carried_about(&self, penetration: f64, law: &mut impl LineLaw) -> Option<(f64, f64)> {
+        (self.rule.nodes.len() > crown::FEW[0].len()).then(|| self.by_loads(penetration, crown::FEW, law)).flatten()
+    }
+
+    /// None where it is not made of crowns.
+    fn by_loads(&self, penetration: f64, nodes: [&[f64]; 2], law: &mut impl LineLaw) -> Option<(f64, f64)> {
+        let DeviationForm::Quadratic(pieces) = &self.shape else { return None };
+        if !pieces.iter().all(|piece| piece.is_crown(penetration - piece.base, nodes)) {
+            return None;
+        }
+        let (mut sum, mut slope) = (0.0, 0.0);
+        for (index, piece) in pieces.iter().enumerate() {
+            let depth = penetration - piece.base;
+            if depth > 0.0 {
+                let (part, rise) = piece.carried(depth, nodes, [index, pieces.len() + index], law);
+                sum += part;
+                slope += rise;
+            }
+        }
+        Some((sum, slope))
+    }
 }
 
 /// Both ends, and what is not smooth between them.
@@ -281,59 +301,6 @@ fn slices(stretches: impl Iterator<Item = (f64, f64)>, rule: &Rule) -> Vec<(f64,
         nodes.map(move |(node, weight)| (weight * (to - from), from + (to - from) * node))
     };
     stretches.flat_map(place).collect()
-}
-
-impl Piece {
-    /// One that does not rise.
-    const FLAT: Self =
-        Self { base: 0.0, slope: 0.0, bend: 0.0, per_bend: 0.0, length: 1.0, rise: 0.0, low: 0.0, weight: 1.0 };
-
-    /// `polynomial` in z from `from` to `to`, between which it is monotonic, seen from its lower end.
-    fn new(polynomial: [f64; 3], from: f64, to: f64, width: f64) -> Self {
-        let [constant, slope, bend] = polynomial;
-        let height = |z: f64| constant + z * (slope + z * bend);
-        let low = if height(from) <= height(to) { from } else { to };
-        let steepness = (slope + 2.0 * bend * low).abs();
-        let length = to - from;
-        // Against rounding where the lower end is the vertex.
-        let slope = if steepness * length <= 1e-14 * (bend * length * length).abs() { 0.0 } else { steepness };
-        let rise = (length * (slope + length * bend)).max(0.0);
-        Self { base: height(low), slope, bend, per_bend: 1.0 / bend, length, rise, low, weight: 1.0 / width }
-    }
-
-    fn mean(&self) -> f64 {
-        let Self { base, slope, bend, length, weight, .. } = *self;
-        weight * length * (base + length * (0.5 * slope + length * bend / 3.0))
-    }
-
-    /// How far h stays below base + `depth`, for `depth` > 0.
-    #[inline]
-    fn reach(&self, depth: f64) -> f64 {
-        let reach = if self.slope == 0.0 {
-            (depth * self.per_bend).sqrt()
-        } else {
-            // The root of slope ζ + bend ζ² = depth in the form that does not cancel.
-            2.0 * depth / (self.slope + (self.slope * self.slope + 4.0 * self.bend * depth).max(0.0).sqrt())
-        };
-        if depth >= self.rise { self.length } else { reach.min(self.length) }
-    }
-
-    /// How fast it grows with the depth.
-    fn widening(&self, depth: f64, reach: f64) -> f64 {
-        if depth >= self.rise { 0.0 } else { 1.0 / (self.slope + 2.0 * self.bend * reach) }
-    }
-
-    /// What [`Face::passed`] has of it.
-    #[must_use]
-    #[inline]
-    pub fn passed(&self, penetration: f64) -> (f64, f64) {
-        // Without a branch: it is computed for several penetrations at a time.
-        let depth = penetration - self.base;
-        let reach = self.reach(depth);
-        let width = self.weight * reach;
-        let passed = width * (depth - reach * (0.5 * self.slope + reach * (self.bend / 3.0)));
-        if depth > 0.0 { (passed, width) } else { (0.0, 0.0) }
-    }
 }
 
 #[cfg(test)]

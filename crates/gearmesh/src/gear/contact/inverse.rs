@@ -5,9 +5,11 @@
 
 use crate::numeric::logarithm::Known;
 
-/// The last step, over the load: what it leaves is of third order in it, and of second where it is only about known how the
-/// law bends.
-const CLOSE: [f64; 2] = [1e-5, 1e-8];
+/// The last step, over the load: what it leaves is of third order in it, and a little of second where how the law bends
+/// follows from two places.
+const CLOSE: [f64; 2] = [1e-5, 1e-6];
+/// Loads as far apart as this share tell how a law bends at one of them, but for 1e-8 of it.
+const APART: f64 = 1e-3;
 /// Its most steps; one or two are taken.
 const STEPS: usize = 12;
 /// Penetrations whose ratio is between these are near: the tangent leads from one to the other.
@@ -24,6 +26,8 @@ pub struct Inverse {
     pub load: f64,
     /// d load/d penetration.
     pub slope: f64,
+    /// d² penetration/d load²; 0 where it is not known.
+    pub bend: f64,
     /// A load nearby, from which logarithms are found: always of one number, so that roundings do not add up.
     pub known: Known,
 }
@@ -32,7 +36,7 @@ impl Inverse {
     /// The place of a load with this slope.
     #[must_use]
     pub fn new(penetration: f64, (load, slope): (f64, f64)) -> Self {
-        Self { penetration, load, slope, known: Known::new(load) }
+        Self { penetration, load, slope, bend: 0.0, known: Known::new(load) }
     }
 
     /// The place at another penetration > 0. `law`: the penetration at a load per width, its slope and the slope of that, and
@@ -41,20 +45,30 @@ impl Inverse {
     #[inline]
     pub fn next(&self, penetration: f64, law: impl Fn(Known) -> ([f64; 3], bool)) -> Option<Self> {
         let ratio = penetration / self.penetration;
-        let tangent = self.load + self.slope * (penetration - self.penetration);
+        let along = self.slope * (penetration - self.penetration);
+        // The tangent, and what the law bends from it.
+        let tangent = self.load + along * (1.0 - 0.5 * self.bend * self.slope * along);
         let is_near = ratio > NEAR[0] && ratio < NEAR[1] && tangent > 0.0;
         let (mut load, mut known) = (if is_near { tangent } else { ratio * self.load }, self.known);
+        let (mut before, mut apart) = ([self.load, self.penetration, 1.0 / self.slope], self.bend);
         for _ in 0..STEPS {
             let here = known.near(load).unwrap_or_else(|| {
                 known = Known::new(load);
                 known
             });
-            let ([at, rise, bend], is_rough) = law(here);
+            let ([at, rise, about], is_rough) = law(here);
+            let width = load - before[0];
+            if width.abs() > APART * load {
+                // Of the cubic with the values and slopes of both places.
+                apart = (2.0 * before[2] + 4.0 * rise - 6.0 * (at - before[1]) / width) / width;
+                before = [load, at, rise];
+            }
+            let bend = if is_rough { apart } else { about };
             let newton = (penetration - at) / rise;
             // Again with what the law bends along the way, where that is little.
             if newton.abs() <= CLOSE[usize::from(is_rough)] * load {
                 let step = newton - 0.5 * bend / rise * newton * newton;
-                return Some(Self { penetration, load: load + step, slope: 1.0 / (rise + bend * step), known });
+                return Some(Self { penetration, load: load + step, slope: 1.0 / (rise + bend * step), bend, known });
             }
             load = (load + newton).max(LEAST * load);
         }

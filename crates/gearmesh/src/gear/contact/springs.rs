@@ -2,9 +2,9 @@
 //!
 //! Stiffness in N/m over the common face width. Must not know: where in the mesh cycle the position is.
 
-use std::cell::{Cell, OnceCell, RefCell};
+use std::cell::{Cell, OnceCell, RefCell, RefMut};
 
-use super::face::Face;
+use super::face::{Face, LineLaw};
 use super::flattening::InSeries;
 use super::inverse::Inverse;
 use super::plain::PlainLaw;
@@ -78,7 +78,7 @@ pub struct LogarithmicPairs<'p, 'a, F, const N: usize> {
     pub faces: Faces<'p>,
     /// Loads per width that each pair had last, or may have, and their logarithms.
     pub logs: [Cell<Known>; N],
-    /// Where on the law each slice of each pair was last.
+    /// Where on the law each slice of each pair, or end of a crown, was last.
     pub last: [RefCell<Vec<Inverse>>; N],
 }
 
@@ -118,6 +118,10 @@ impl<'a, F: Fn(usize) -> InSeries<'a>, const N: usize> LogarithmicPairs<'_, 'a, 
         self.beyond_plain(pair, known)
     }
 
+    fn law(&self, pair: usize) -> OfPair<'_, '_, 'a, F, N> {
+        OfPair { pairs: self, pair, last: self.last[pair].borrow_mut() }
+    }
+
     /// Where a slice of a pair is on the law, if nothing is known of places nearby.
     fn inverted(&self, pair: usize, penetration: f64) -> Inverse {
         let known = self.plain[pair].load(self.rates, penetration);
@@ -151,21 +155,42 @@ impl<'a, F: Fn(usize) -> InSeries<'a>, const N: usize> Yielding for LogarithmicP
 
 impl<'a, F: Fn(usize) -> InSeries<'a>, const N: usize> Springs for LogarithmicPairs<'_, 'a, F, N> {
     fn response(&self, pair: usize, penetration: f64) -> (f64, f64) {
-        let last = &mut *self.last[pair].borrow_mut();
-        last.reserve(self.faces.of(pair).slices().saturating_sub(last.len()));
-        let (load, slope) = self.faces.of(pair).summed(penetration, |slice, depth| {
-            // From where it was before, or else from the slice beside it.
-            let near = last.get(slice).or(last.last());
-            let found = near.and_then(|near| near.next(depth, |load| self.rates_at(pair, load)));
-            let found = found.unwrap_or_else(|| self.inverted(pair, depth));
-            if let Some(last) = last.get_mut(slice) {
-                *last = found;
-            } else {
-                last.push(found);
-            }
-            (found.load, found.slope)
-        });
+        let (load, slope) = self.faces.of(pair).carried(penetration, &mut self.law(pair));
         (self.width * load, self.width * slope)
+    }
+
+    fn response_about(&self, pair: usize, penetration: f64) -> Option<(f64, f64)> {
+        let found = self.faces.of(pair).carried_about(penetration, &mut self.law(pair));
+        found.map(|(load, slope)| (self.width * load, self.width * slope))
+    }
+}
+
+/// The law of one of the pairs.
+struct OfPair<'l, 'p, 'a, F, const N: usize> {
+    pairs: &'l LogarithmicPairs<'p, 'a, F, N>,
+    pair: usize,
+    last: RefMut<'l, Vec<Inverse>>,
+}
+
+impl<'a, F: Fn(usize) -> InSeries<'a>, const N: usize> LineLaw for OfPair<'_, '_, 'a, F, N> {
+    fn load(&mut self, place: usize, penetration: f64) -> (f64, f64) {
+        let (pairs, pair) = (self.pairs, self.pair);
+        // From where it was before, or else from the place beside it.
+        let near = self.last.get(place).or(self.last.last());
+        let found = near.and_then(|near| near.next(penetration, |load| pairs.rates_at(pair, load)));
+        let found = found.unwrap_or_else(|| pairs.inverted(pair, penetration));
+        if let Some(last) = self.last.get_mut(place) {
+            *last = found;
+        } else {
+            self.last.push(found);
+        }
+        (found.load, found.slope)
+    }
+
+    #[inline]
+    fn penetration(&self, load: Known) -> [f64; 2] {
+        let ([penetration, slope, _], _) = self.pairs.rates_at(self.pair, load);
+        [penetration, slope]
     }
 }
 
