@@ -93,6 +93,9 @@ impl Specified for Measured {
         let profile_ends = flank_ends.map(|roll| roll * flank.base_radius);
         let face_ends = [-0.5 * flank.face_width, 0.5 * flank.face_width];
         let lengths = |rolls: &[f64]| rolls.iter().map(|roll| roll * flank.base_radius).collect::<Vec<_>>();
+        for places in along.as_deref().map(lengths).iter().chain(&across) {
+            checks::smoothed(&self.smoothing, places[places.len() - 1] - places[0])?;
+        }
         Ok(match (along, across) {
             (Some(rolls), None) => {
                 let lengths = lengths(&rolls);

@@ -2,7 +2,7 @@
 //!
 //! Must not know: what a trace becomes.
 
-use super::{MOST_POINTS, Measured};
+use super::{MOST_POINTS, Measured, Smoothing};
 use crate::gear::geometry::Gear;
 use crate::gear::modification::flank::Flank;
 use declare::error::Diagnostic;
@@ -249,6 +249,18 @@ pub(super) fn face_positions(stated: &Measured, flank: &Flank) -> Result<Option<
             .help("positions count from the middle of the face; a trace of another gear fits none"));
     }
     Ok(Some(places.clone()))
+}
+
+/// Refuses a smoothing that leaves nothing of what was measured over this length \[m\].
+pub(super) fn smoothed(smoothing: &Smoothing, over: f64) -> Result<(), Diagnostic> {
+    match smoothing {
+        Smoothing::Gaussian { cutoff } if *cutoff > over => {
+            let [cutoff, over] = [*cutoff, over].map(millimetres);
+            let message = format!("the cutoff of {cutoff} is longer than the trace, which goes over {over}");
+            Err(Diagnostic::new(message).of("cutoff").help("ISO 1328-1 has a thirtieth of the evaluated length"))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn of_another_gear(message: String, name: &'static str) -> Diagnostic {

@@ -48,6 +48,10 @@ fn what_is_no_trace_is_refused() {
         |stated| stated.deviations.truncate(99),
         "there are 99 deviations for 100 `roll_lengths`; 100 are expected",
     );
+    refused(
+        |stated| stated.smoothing = Smoothing::Gaussian { cutoff: 0.25 },
+        "the cutoff of 250.000000 mm is longer than the trace, which goes over ",
+    );
     refused(|stated| stated.roll_lengths = None, "nothing says where the deviations were measured");
     refused(|stated| stated.diameters = Some(vec![60e-3, 61e-3]), "given twice, by `roll_lengths` and `diameters`");
     refused(|stated| *lengths(stated) = vec![1e-3], "`roll_lengths` has 1 points; 2 are the fewest of a trace");
