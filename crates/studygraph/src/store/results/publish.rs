@@ -337,9 +337,9 @@ impl Folder {
     #[cfg(feature = "hdf5")]
     fn put_hdf5(&self, listed: &mut Listed, manifest: &Manifest) -> Result<(), StoreError> {
         let name = self.hdf5_file();
-        let bytes = hdf5_bytes(&name, manifest, &|record| self.shared(record))?;
         // Its bytes depend on the version of libhdf5 as well.
-        self.put(listed, &name, &bytes, true)
+        let put = |bytes: &[u8]| self.put(listed, &name, bytes, true);
+        hdf5_bytes(&name, manifest, &|record| self.shared(record), put)?
     }
 
     #[cfg(not(feature = "hdf5"))]
@@ -391,17 +391,18 @@ pub(super) fn worse(fault: &mut Option<StoreError>, other: StoreError) {
     }
 }
 
-/// The HDF5 file of all tables, but for those of files, which lie beside it already, and long ones, of which it says so.
+/// Hands on the HDF5 file of all tables, but for those of files, which lie beside it already, and long ones, of which it says so.
 /// `table` gives what is published for a record: of a bundle all of it.
 ///
 /// # Errors
 /// When a table cannot be had, or holds what HDF5 cannot.
 #[cfg(feature = "hdf5")]
-pub fn hdf5_bytes(
+pub fn hdf5_bytes<T>(
     name: &str,
     manifest: &Manifest,
     table: &dyn Fn(&TableRecord) -> Result<Arc<Table>, StoreError>,
-) -> Result<Vec<u8>, StoreError> {
+    take: impl FnOnce(&[u8]) -> T,
+) -> Result<T, StoreError> {
     let mut writer = hdf5::Writer::new(name)?;
     for (group, record) in bundle::published(manifest).filter(|(_, record)| record.files.is_empty()) {
         if bundle::is_long(record.rows) {
@@ -410,7 +411,7 @@ pub fn hdf5_bytes(
         }
         writer.add(group, &*table(record)?)?;
     }
-    writer.finish()
+    writer.finish(take)
 }
 
 #[allow(clippy::needless_pass_by_value)] // for `map_err`
