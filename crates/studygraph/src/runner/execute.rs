@@ -378,10 +378,10 @@ impl Run<'_> {
     fn put_together(&self, node: usize) -> Result<Vec<StoredTable>, Ended> {
         let (parts, known, names, is_read) = {
             let mut board = self.board();
-            let known = board.known_tables(node);
             let entry = board.nodes[node].known.first().and_then(|known| known.entry.as_ref());
             let names: Vec<String> =
                 entry.iter().flat_map(|entry| &entry.tables).map(|table| table.name.clone()).collect();
+            let known = board.known_tables(node);
             (Arc::clone(&board.nodes[node].parts), known, names, board.is_read(node))
         };
         let single = parts.len() == 1;
