@@ -47,7 +47,7 @@ fn storage(criterion: &mut Criterion) {
             bencher.iter(|| {
                 let mut writer = Writer::new("bench.h5").expect("there is memory");
                 writer.add("stage", black_box(&table)).expect("the file is ours");
-                writer.finish()
+                writer.finish(<[u8]>::len)
             });
         });
     }

@@ -38,7 +38,10 @@ impl Elements {
             Value::Member(family, record) => Some(Element { family, record: record.clone() }),
             _ => None,
         };
-        self.0.iter().filter_map(of).collect()
+        let mut elements: Vec<Element> = self.0.iter().filter_map(of).collect();
+        // Mostly one, with room for four.
+        elements.shrink_to_fit();
+        elements
     }
 }
 

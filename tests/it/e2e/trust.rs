@@ -200,7 +200,7 @@ fn what_an_archive_shows_is_what_its_tables_hold() {
                 }
                 writer.add(stage, &Table::from_columns(table.schema().clone(), columns).unwrap()).unwrap();
             }
-            *bytes = writer.finish().unwrap();
+            *bytes = writer.finish(<[u8]>::to_vec).unwrap();
         }
     };
     let (out, _) = said(&hdf5(0.0), "quick.h5", 0);

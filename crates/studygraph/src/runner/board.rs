@@ -350,15 +350,16 @@ impl<'a> Board<'a> {
         true
     }
 
-    /// What a stage's tables are, when all its parts are known, and, where there are several, what they are together.
+    /// What a stage's tables are, when all its parts are known, and, where there are several, what they are together. Those of a
+    /// single part are the stage's own from then on: its entry need not have them too.
     pub fn known_tables(&mut self, node: usize) -> Option<Vec<StoredTable>> {
         let progress = &mut self.nodes[node];
+        if let [Known { entry: Some(entry), .. }] = &mut progress.known[..] {
+            return Some(std::mem::take(&mut entry.tables));
+        }
         let entries: Vec<&CacheEntry> = progress.known.iter().filter_map(|known| known.entry.as_ref()).collect();
         if entries.len() != progress.parts.len() {
             return None;
-        }
-        if let [entry] = entries[..] {
-            return Some(entry.tables.clone());
         }
         let whole = key::whole(entries.iter().map(|entry| entry.tables.as_slice()));
         progress.whole = Some(whole);

@@ -57,7 +57,8 @@ pub struct Surroundings<'a> {
     pub draw: Option<Draw<'a>>,
 }
 
-/// Runs a study and brings its results folder up to date; `draw` draws the report.
+/// Runs a study and brings its results folder up to date; `draw` draws the report. What the outcome knew of keys, fields and tables
+/// is in the manifest.
 ///
 /// # Errors
 /// As [`execute`] and [`Folder::publish`]. What could not be kept is published all the same, and told last of all.
@@ -71,17 +72,16 @@ pub fn run(
     draw: Option<Draw<'_>>,
 ) -> Result<(Outcome, Published), RunError> {
     let around = Surroundings { cache, observer, stop, folder, draw };
-    let publish = |outcome: &Outcome| {
-        publishing(study, outcome, options, around, |facts, source| {
-            folder.publish(outcome.manifest(study), facts, source)
-        })
+    let publish = |outcome: &mut Outcome| {
+        let manifest = outcome.take_manifest(study);
+        publishing(study, outcome, options, around, |facts, source| folder.publish(manifest, facts, source))
     };
     let mut outcome = execute(study, cache, options, observer, stop)?;
-    let mut published = publish(&outcome);
+    let mut published = publish(&mut outcome);
     if let Err(StoreError::Damaged { .. }) = published {
         // Plans look at headers only; a table that is found damaged now is forgotten, and computed again.
         outcome = execute(study, cache, options, observer, stop)?;
-        published = publish(&outcome);
+        published = publish(&mut outcome);
     }
     for message in &warnings(cache, &outcome) {
         observer.event(&Event::Warning { message });
@@ -103,8 +103,8 @@ pub fn run_part(
     around: Surroundings<'_>,
 ) -> Result<Option<(Outcome, Published)>, RunError> {
     let Surroundings { cache, observer, stop, folder, .. } = around;
-    let outcome = execute(&part.study, cache, &part.options, observer, stop)?;
-    let manifest = outcome.manifest(&part.study);
+    let mut outcome = execute(&part.study, cache, &part.options, observer, stop)?;
+    let manifest = outcome.take_manifest(&part.study);
     let published = publishing(&part.study, &outcome, options, around, |facts, source| {
         let of_part = results::Part {
             manifest: manifest.clone(),
@@ -239,7 +239,11 @@ pub fn execute(
         cache.put_journal(&study.name, &journal);
     }
     let stopped = stop.load(Ordering::Relaxed) && board.nodes.iter().any(|progress| progress.given_up);
-    Ok(Outcome::of(&board, stopped, began.elapsed().as_secs_f64()))
+    let outcome = Outcome::of(&board, stopped, began.elapsed().as_secs_f64());
+    drop(board);
+    // Of what the threads took, all of it.
+    memory::give_back();
+    Ok(outcome)
 }
 
 impl Run<'_> {
@@ -374,10 +378,10 @@ impl Run<'_> {
     fn put_together(&self, node: usize) -> Result<Vec<StoredTable>, Ended> {
         let (parts, known, names, is_read) = {
             let mut board = self.board();
-            let known = board.known_tables(node);
             let entry = board.nodes[node].known.first().and_then(|known| known.entry.as_ref());
             let names: Vec<String> =
                 entry.iter().flat_map(|entry| &entry.tables).map(|table| table.name.clone()).collect();
+            let known = board.known_tables(node);
             (Arc::clone(&board.nodes[node].parts), known, names, board.is_read(node))
         };
         let single = parts.len() == 1;

@@ -38,7 +38,8 @@ pub struct Graph {
     pub reads: Vec<Vec<usize>>,
     /// The nodes that read from each node, ascending.
     pub readers: Vec<Vec<usize>>,
-    pub demands: Vec<Demand>,
+    /// Nodes of which no more is asked than of all that can give the same share it.
+    pub demands: Vec<Arc<Demand>>,
     pub outputs: Vec<Arc<[Schema]>>,
     /// What is asked of each node, of what it can give; nodes of which the same is asked share it.
     pub demanded: Vec<Demanded>,
@@ -163,10 +164,10 @@ fn outputs(study: &Study) -> Vec<Arc<[Schema]>> {
 }
 
 /// The demanded tables with the demanded columns.
-fn demanded(outputs: &[Arc<[Schema]>], demands: &[Demand]) -> Vec<Demanded> {
+fn demanded(outputs: &[Arc<[Schema]>], demands: &[Arc<Demand>]) -> Vec<Demanded> {
     // What can be given and what is asked, last of all nodes that can give the same.
     let mut last: HashMap<*const Schema, (&Demand, Demanded)> = HashMap::new();
-    let of_node = |(outputs, demand): (&Arc<[Schema]>, &'_ Demand)| {
+    let of_node = |(outputs, demand): (&Arc<[Schema]>, &Demand)| {
         outputs
             .iter()
             .filter(|schema| demand.table(&schema.name))
@@ -174,7 +175,7 @@ fn demanded(outputs: &[Arc<[Schema]>], demands: &[Demand]) -> Vec<Demanded> {
             .collect::<Arc<[_]>>()
     };
     let mut all = Vec::with_capacity(outputs.len());
-    for (outputs, demand) in outputs.iter().zip(demands) {
+    for (outputs, demand) in outputs.iter().zip(demands.iter().map(Arc::as_ref)) {
         let known = last.get(&outputs.as_ptr()).filter(|(asked, _)| *asked == demand);
         let own = known.map_or_else(|| of_node((outputs, demand)), |(_, own)| Arc::clone(own));
         last.insert(outputs.as_ptr(), (demand, Arc::clone(&own)));
@@ -211,14 +212,15 @@ fn demand(
     wanted: &[Wanted],
     (order, ports, outputs): (&[usize], &[Vec<Port>], &[Outputs]),
     inputs: &mut [Vec<Input>],
-) -> Result<Vec<Demand>, Diagnostic> {
+) -> Result<Vec<Arc<Demand>>, Diagnostic> {
     let study = names.study;
-    let mut demands: Vec<Demand> = (outputs.iter())
-        .map(|outputs| {
-            let always = outputs.iter().filter(|schema| !schema.on_demand);
-            Demand { tables: always.map(|schema| (schema.name.clone(), BTreeSet::new())).collect() }
-        })
-        .collect();
+    let mut usual: HashMap<*const Schema, Arc<Demand>> = HashMap::new();
+    let of_all = |outputs: &Outputs| {
+        let always = outputs.iter().filter(|schema| !schema.on_demand);
+        Arc::new(Demand { tables: always.map(|schema| (schema.name.clone(), BTreeSet::new())).collect() })
+    };
+    let usual = |outputs: &Outputs| Arc::clone(usual.entry(outputs.as_ptr()).or_insert_with(|| of_all(outputs)));
+    let mut demands: Vec<Arc<Demand>> = outputs.iter().map(usual).collect();
     for Wanted { stage, want } in wanted {
         let index = names.find(stage)?;
         add(&mut demands[index], &study.nodes[index], &outputs[index], want)?;
@@ -237,7 +239,7 @@ fn demand(
             let pictured = pictures.tables.iter().filter(|(kind, _)| *kind == node.kind.name);
             let shown = pictured.filter_map(|(_, tables)| tables.iter().find(is_there).copied());
             for table in shown.filter(|table| rows_of(node, table) <= MOST_PICTURED) {
-                demands[index].tables.entry(table.to_owned()).or_default();
+                Arc::make_mut(&mut demands[index]).tables.entry(table.to_owned()).or_default();
             }
         }
     }
@@ -272,14 +274,16 @@ fn rows_of(node: &Node, table: &str) -> u64 {
     foreseen.iter().filter(|(name, _)| name == table).map(|(_, rows)| rows.count).sum()
 }
 
-fn add(demand: &mut Demand, node: &Node, outputs: &[Schema], want: &Want) -> Result<(), Diagnostic> {
+fn add(demand: &mut Arc<Demand>, node: &Node, outputs: &[Schema], want: &Want) -> Result<(), Diagnostic> {
     let Some(schema) = outputs.iter().find(|schema| schema.name == want.table) else {
         let known = outputs.iter().map(|schema| schema.name.as_str());
         let message = format!("stage `{}` ({}) has no table `{}`", node.name, node.kind.name, want.table);
         let help = node.stage.lacks(&want.table).map_or_else(|| suggest(&want.table, known), str::to_owned);
         return Err(Diagnostic::new(message).help(help));
     };
-    let columns = demand.tables.entry(want.table.clone()).or_default();
+    if !demand.table(&want.table) {
+        Arc::make_mut(demand).tables.insert(want.table.clone(), BTreeSet::new());
+    }
     for name in &want.columns {
         let Some(column) = schema.column(name) else {
             let message = format!("table `{}.{}` has no column `{name}`", node.name, want.table);
@@ -287,8 +291,9 @@ fn add(demand: &mut Demand, node: &Node, outputs: &[Schema], want: &Want) -> Res
             return Err(Diagnostic::new(message).help(suggest(name, known)));
         };
         // The others come in any case: naming them must not change a key.
-        if column.on_demand {
-            columns.insert(name.clone());
+        if column.on_demand && !demand.column(&want.table, name) {
+            let tables = &mut Arc::make_mut(demand).tables;
+            tables.entry(want.table.clone()).or_default().insert(name.clone());
         }
     }
     Ok(())

@@ -68,7 +68,8 @@ pub struct StageOutcome {
 }
 
 impl Outcome {
-    /// What a board shows at the end.
+    /// What a board shows at the end. All of it is copied: what threads made lies among what they needed meanwhile, and one digest
+    /// keeps a page of it from being given back.
     #[must_use]
     pub fn of(board: &Board, stopped: bool, seconds: f64) -> Self {
         // Of thousands of stages of a kind the same is left out.
@@ -103,7 +104,7 @@ impl Outcome {
                 work: progress.work(board.study.program.counters),
                 warnings: progress.warnings(|_| true),
                 left_out: left_out(node),
-                keys: progress.parts.iter().map(|part| part.record.clone()).collect(),
+                keys: copied(progress.parts.iter().map(|part| &part.record)),
                 config: Config::of(&Shown { fields: of_study.kind.fields, record: &of_study.record }),
                 tables: if progress.state.has_tables() { tables.collect() } else { Vec::new() },
                 parts: progress.parts.iter().map(|part| part.key).collect(),
@@ -187,9 +188,10 @@ impl Outcome {
         self.stage(stage).filter(|stage| stage.state.has_tables()).map_or(&[], |stage| &stage.parts)
     }
 
-    /// The manifest of this run, without facts and files.
+    /// The manifest of this run, without facts and files. Keys, fields and tables of the stages go into it and are not known here
+    /// any longer: of thousands of stages they are as much as the study.
     #[must_use]
-    pub fn manifest(&self, study: &Study) -> Manifest {
+    pub fn take_manifest(&mut self, study: &Study) -> Manifest {
         let source = study.source.as_ref().map(|source| Source {
             paper: source.paper.clone(),
             tables: source.tables.clone(),
@@ -208,7 +210,7 @@ impl Outcome {
             source,
             study_digest: blake3::hash(study.text.as_bytes()).to_string(),
             seconds: self.seconds,
-            stages: self.stages.iter().map(|stage| stage.record(&mut described)).collect(),
+            stages: self.stages.iter_mut().map(|stage| stage.take_record(&mut described)).collect(),
             tolerances: study.tolerances.iter().map(|one| (one.name.clone(), one.text.clone())).collect(),
             ..Manifest::default()
         };
@@ -228,7 +230,7 @@ impl StageOutcome {
         })
     }
 
-    fn record(&self, described: &mut impl FnMut(&Arc<Schema>) -> Described) -> StageRecord {
+    fn take_record(&mut self, described: &mut impl FnMut(&Arc<Schema>) -> Described) -> StageRecord {
         let status = match self.state {
             StageState::Hit if self.ran == 0 => "hit",
             StageState::Hit | StageState::Done => "ran",
@@ -244,21 +246,36 @@ impl StageOutcome {
             name: self.name.clone(),
             kind: self.kind.to_owned(),
             version: self.version,
-            keys: self.keys.clone(),
-            config: self.config.clone(),
+            keys: std::mem::take(&mut self.keys),
+            config: std::mem::take(&mut self.config),
             status: status.to_owned(),
             why: self.why.clone(),
             seconds: self.seconds,
             work: self.work.named(),
             warnings: self.warnings.clone(),
             left_out: self.left_out.iter().map(omission).chain(self.beyond_hdf5()).collect(),
-            tables: self
-                .tables
-                .iter()
-                .map(|(schema, table)| TableRecord::described(&self.name, &described(schema), table))
+            tables: std::mem::take(&mut self.tables)
+                .into_iter()
+                .map(|(schema, table)| TableRecord::described(&self.name, &described(&schema), &table))
                 .collect(),
         }
     }
+}
+
+/// Records of chunks; what they have in common they share as those do that they are copied from.
+fn copied<'r>(records: impl Iterator<Item = &'r KeyRecord>) -> Vec<KeyRecord> {
+    let mut last: Option<(&KeyRecord, KeyRecord)> = None;
+    let copied = |record: &'r KeyRecord| {
+        let mut copy = record.clone();
+        match &last {
+            Some((of, known)) if Arc::ptr_eq(&of.fields, &record.fields) => copy.fields = Arc::clone(&known.fields),
+            _ => copy.fields = record.fields.iter().cloned().collect(),
+        }
+        copy.inputs = record.inputs.iter().cloned().collect();
+        last = Some((record, copy.clone()));
+        copy
+    };
+    records.map(copied).collect()
 }
 
 /// The chunks of a table as one.

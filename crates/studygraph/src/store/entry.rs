@@ -129,7 +129,7 @@ impl CacheEntry {
     /// # Errors
     /// When a table cannot be written as Parquet.
     pub fn encode(key: Digest, tables: &[&Table], of_run: OfRun) -> Result<(Self, Vec<u8>), StoreError> {
-        let mut stored = Vec::new();
+        let mut stored = Vec::with_capacity(tables.len());
         let mut bodies = Vec::new();
         for table in tables {
             let body = parquet::write(table)?;

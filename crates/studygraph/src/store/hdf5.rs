@@ -75,15 +75,15 @@ impl Writer {
             .map_err(failed)
     }
 
-    /// The bytes of the file.
+    /// Hands on the bytes of the file.
     ///
     /// # Errors
     /// When libhdf5 could not write all of it, be it on closing.
-    pub fn finish(self) -> Result<Vec<u8>, StoreError> {
+    pub fn finish<T>(self, take: impl FnOnce(&[u8]) -> T) -> Result<T, StoreError> {
         let failed = |error: hdf5_metno::Error| format(self.name.clone(), &error);
-        let bytes = raw::image(&self.file).map_err(failed)?;
+        let taken = raw::image(&self.file, take).map_err(failed)?;
         self.file.close().map_err(|error| format(self.name.clone(), &error))?;
-        Ok(bytes)
+        Ok(taken)
     }
 }
 
@@ -278,7 +278,7 @@ mod tests {
         for (stage, table) in tables {
             writer.add(stage, table).unwrap();
         }
-        let bytes = writer.finish().unwrap();
+        let bytes = writer.finish(<[u8]>::to_vec).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("other.h5");
         std::fs::write(&path, &bytes).unwrap();

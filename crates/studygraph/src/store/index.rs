@@ -6,7 +6,7 @@
 //! costs reading, never results. Must not know: what the files are.
 
 use std::fs::{self, File, Metadata};
-use std::io::{self, Read};
+use std::io::{self, Read, Write};
 use std::path::Path;
 use std::thread;
 use std::time::Duration;
@@ -179,6 +179,36 @@ impl Stamp {
 #[must_use]
 pub fn digest(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_string()
+}
+
+/// Hands bytes on, and digests them.
+pub struct Digesting<W> {
+    writer: W,
+    hasher: blake3::Hasher,
+}
+
+impl<W: Write> Digesting<W> {
+    pub fn new(writer: W) -> Self {
+        Self { writer, hasher: blake3::Hasher::new() }
+    }
+
+    /// As [`digest`] of all that was written.
+    #[must_use]
+    pub fn digest(&self) -> String {
+        self.hasher.finalize().to_string()
+    }
+}
+
+impl<W: Write> Write for Digesting<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.writer.write(bytes)?;
+        self.hasher.update(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.writer.flush()
+    }
 }
 
 /// Reads a file and notes what it is now.

@@ -10,6 +10,7 @@ mod wire;
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
+use std::io::Write;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -259,10 +260,22 @@ impl Manifest {
     /// As [`Manifest::text`].
     pub fn text_with(&self, files: &[FileRecord]) -> Result<Vec<u8>, serde_json::Error> {
         let mut text = Vec::new();
-        wire::text(self, files)
-            .serialize(&mut serde_json::Serializer::with_formatter(&mut text, lines::Lines::default()))?;
-        text.push(b'\n');
+        self.write_with(files, &mut text)?;
         Ok(text)
+    }
+
+    /// Writes the text, which is as long as what is held of it.
+    ///
+    /// # Errors
+    /// As [`Manifest::text`]; what the writer says.
+    pub fn write(&self, writer: &mut impl Write) -> Result<(), serde_json::Error> {
+        self.write_with(&self.files, writer)
+    }
+
+    fn write_with(&self, files: &[FileRecord], writer: &mut impl Write) -> Result<(), serde_json::Error> {
+        wire::text(self, files)
+            .serialize(&mut serde_json::Serializer::with_formatter(&mut *writer, lines::Lines::default()))?;
+        writer.write_all(b"\n").map_err(serde_json::Error::io)
     }
 
     /// The text of a manifest with another list of files; none where it was not written as this program does.

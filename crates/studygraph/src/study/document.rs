@@ -259,8 +259,12 @@ impl<'a> Tree<'a> {
 
     fn end(&mut self, span: &Span) -> Result<(), Diagnostic> {
         let Some(mut open) = self.open.pop() else { return Ok(()) };
+        // Most have one or two values, and room for four: half of a tree with thousands of them.
         let content = match open.inside {
-            Inside::Sequence(items) => Content::Sequence(items),
+            Inside::Sequence(mut items) => {
+                items.shrink_to_fit();
+                Content::Sequence(items)
+            }
             Inside::Mapping { mut pairs, mut lines, merged, .. } => {
                 if let Some(first) = pairs.first().filter(|_| !open.flow) {
                     open.place = first.place;
@@ -271,6 +275,7 @@ impl<'a> Tree<'a> {
                         pairs.push(pair);
                     }
                 }
+                pairs.shrink_to_fit();
                 Content::Mapping(pairs)
             }
         };

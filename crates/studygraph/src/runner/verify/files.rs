@@ -163,7 +163,8 @@ impl<R: Read + Seek> Files<'_, R> {
             Ok(Arc::clone(table))
         };
         // A manifest may list what no file can hold; its tables are looked at all the same.
-        if hdf5_bytes(&name, self.manifest, &found).is_ok_and(|bytes| *archived == bytes) {
+        let is_same = hdf5_bytes(&name, self.manifest, &found, |bytes| *archived == *bytes);
+        if is_same.is_ok_and(|is_same| is_same) {
             return Ok(Some(VerifiedFile { file: name, agreement: Agreement::Identical }));
         }
         let path = work.join("archived.h5");

@@ -36,7 +36,7 @@ pub(super) struct Text<'a> {
     /// What tables are, by a name for those that are alike.
     #[serde(default)]
     schemas: Schemas,
-    stages: Vec<Stage<'a>>,
+    stages: Stages<'a>,
     #[serde(default, skip_serializing_if = "<[_]>::is_empty")]
     tolerances: Cow<'a, [(String, String)]>,
     #[serde(default)]
@@ -45,7 +45,7 @@ pub(super) struct Text<'a> {
 
 /// In the order in which they were first needed.
 #[derive(Default)]
-struct Schemas(Vec<(String, TableSchema)>);
+struct Schemas(Vec<(Arc<str>, TableSchema)>);
 
 #[derive(Clone, Serialize, Deserialize)]
 struct TableSchema {
@@ -53,6 +53,14 @@ struct TableSchema {
     description: Arc<str>,
     #[serde(serialize_with = "shared::serialize", deserialize_with = "shared::all")]
     columns: Arc<[ColumnRecord]>,
+}
+
+/// The stages of a manifest.
+enum Stages<'a> {
+    Read(Vec<Stage<'a>>),
+    /// To be written, one made ready after the other: all at once take as much as the manifest. With the names of the schemas of
+    /// all their tables.
+    Of(&'a [StageRecord], Vec<Arc<str>>),
 }
 
 #[derive(Serialize, Deserialize)]
@@ -129,7 +137,7 @@ impl Serialize for Schemas {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(self.0.len()))?;
         for (name, schema) in &self.0 {
-            map.serialize_entry(name, schema)?;
+            map.serialize_entry(&**name, schema)?;
         }
         map.end()
     }
@@ -138,7 +146,25 @@ impl Serialize for Schemas {
 impl<'de> Deserialize<'de> for Schemas {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let known = BTreeMap::<String, TableSchema>::deserialize(deserializer)?;
-        Ok(Self(known.into_iter().collect()))
+        Ok(Self(known.into_iter().map(|(name, schema)| (name.into(), schema)).collect()))
+    }
+}
+
+impl Serialize for Stages<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Read(stages) => stages.serialize(serializer),
+            Self::Of(records, schemas) => {
+                let mut schemas = schemas.iter();
+                serializer.collect_seq(records.iter().map(|record| Stage::of(record, &mut schemas)))
+            }
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Stages<'_> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Vec::deserialize(deserializer).map(Self::Read)
     }
 }
 
@@ -151,7 +177,8 @@ impl Serialize for Manifest {
 /// A manifest that lists these files.
 pub(super) fn text<'a>(manifest: &'a Manifest, files: &'a [FileRecord]) -> Text<'a> {
     let mut named = Named::default();
-    let stages = manifest.stages.iter().map(|stage| Stage::of(stage, &mut named)).collect();
+    let tables = manifest.stages.iter().flat_map(|stage| stage.tables.iter().map(|table| (&*stage.kind, table)));
+    let of_tables = tables.map(|(kind, table)| named.name(kind, table)).collect();
     Text {
         format: manifest.format.max(super::FORMAT),
         study: Cow::Borrowed(&manifest.study),
@@ -164,7 +191,7 @@ pub(super) fn text<'a>(manifest: &'a Manifest, files: &'a [FileRecord]) -> Text<
         machine: Cow::Borrowed(&manifest.machine),
         written: Cow::Borrowed(&manifest.written),
         seconds: manifest.seconds,
-        stages,
+        stages: Stages::Of(&manifest.stages, of_tables),
         schemas: Schemas(named.schemas),
         tolerances: Cow::Borrowed(&manifest.tolerances),
         files: Cow::Borrowed(files),
@@ -190,28 +217,28 @@ pub(super) fn with_other_files(mut text: Vec<u8>, files: &[FileRecord]) -> Optio
 /// Names for schemas: that of kind and table, with a number where that is taken.
 #[derive(Default)]
 struct Named {
-    schemas: Vec<(String, TableSchema)>,
+    schemas: Vec<(Arc<str>, TableSchema)>,
     /// Of kind and table, the places of those that were met.
     met: HashMap<(String, String), Vec<usize>>,
     /// The last name of these columns' place in memory, which alike tables share, with its kind and table; the place stays
     /// theirs while the manifest does.
-    quick: HashMap<(*const ColumnRecord, *const u8), (String, String, String)>,
+    quick: HashMap<(*const ColumnRecord, *const u8), (String, String, Arc<str>)>,
 }
 
 impl Named {
-    fn name(&mut self, kind: &str, table: &TableRecord) -> String {
+    fn name(&mut self, kind: &str, table: &TableRecord) -> Arc<str> {
         let place = (table.columns.as_ptr(), table.description.as_ptr());
         if let Some((of, own, name)) = self.quick.get(&place)
             && (of.as_str(), own.as_str()) == (kind, table.table())
         {
-            return name.clone();
+            return Arc::clone(name);
         }
         let name = self.compared(kind, table);
-        self.quick.insert(place, (kind.to_owned(), table.table().to_owned(), name.clone()));
+        self.quick.insert(place, (kind.to_owned(), table.table().to_owned(), Arc::clone(&name)));
         name
     }
 
-    fn compared(&mut self, kind: &str, table: &TableRecord) -> String {
+    fn compared(&mut self, kind: &str, table: &TableRecord) -> Arc<str> {
         let own = table.table();
         let met = self.met.entry((kind.to_owned(), own.to_owned())).or_default();
         let same = |place: &&usize| {
@@ -219,31 +246,30 @@ impl Named {
             (Arc::ptr_eq(columns, &table.columns) || *columns == table.columns) && *description == table.description
         };
         if let Some(place) = met.iter().find(same) {
-            return self.schemas[*place].0.clone();
+            return Arc::clone(&self.schemas[*place].0);
         }
         let name = if met.is_empty() { format!("{kind}.{own}") } else { format!("{kind}.{own}.{}", met.len() + 1) };
+        let name: Arc<str> = name.into();
         met.push(self.schemas.len());
         let schema = TableSchema { description: Arc::clone(&table.description), columns: Arc::clone(&table.columns) };
-        self.schemas.push((name.clone(), schema));
+        self.schemas.push((Arc::clone(&name), schema));
         name
     }
 }
 
 impl<'a> Stage<'a> {
-    fn of(stage: &'a StageRecord, named: &mut Named) -> Self {
-        let tables = stage.tables.iter().map(|table| {
-            let schema = Cow::Owned(named.name(&stage.kind, table));
-            Table {
-                name: Cow::Borrowed(&table.name),
-                rows: table.rows,
-                content: Cow::Borrowed(&table.content),
-                schema,
-                description: None,
-                columns: None,
-                file: Cow::Borrowed(&table.file),
-                files: Cow::Borrowed(&table.files),
-                parts: table.parts.as_ref().map(Cow::Borrowed),
-            }
+    /// With the names of the schemas of its tables, which are the next ones.
+    fn of(stage: &'a StageRecord, schemas: &mut impl Iterator<Item = &'a Arc<str>>) -> Self {
+        let tables = stage.tables.iter().zip(schemas).map(|(table, schema)| Table {
+            name: Cow::Borrowed(&table.name),
+            rows: table.rows,
+            content: Cow::Borrowed(&table.content),
+            schema: Cow::Borrowed(schema),
+            description: None,
+            columns: None,
+            file: Cow::Borrowed(&table.file),
+            files: Cow::Borrowed(&table.files),
+            parts: table.parts.as_ref().map(Cow::Borrowed),
         });
         Self {
             name: Cow::Borrowed(&stage.name),
@@ -292,9 +318,11 @@ impl<'de> Deserialize<'de> for Manifest {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let text = Text::deserialize(deserializer)?;
         let schemas: HashMap<&str, &TableSchema> =
-            text.schemas.0.iter().map(|(name, schema)| (name.as_str(), schema)).collect();
+            text.schemas.0.iter().map(|(name, schema)| (&**name, schema)).collect();
         let wrong = |problem: String| serde::de::Error::custom(problem);
-        let stages = text.stages.into_iter().map(|stage| stage.record(&schemas).map_err(wrong));
+        // Those to be written are records already.
+        let Stages::Read(stages) = text.stages else { return Err(wrong("it has no stages".to_owned())) };
+        let stages = stages.into_iter().map(|stage| stage.record(&schemas).map_err(wrong));
         Ok(Self {
             stages: stages.collect::<Result<_, D::Error>>()?,
             format: text.format,

@@ -8,8 +8,8 @@
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
-use std::fs;
-use std::io::ErrorKind;
+use std::fs::{self, File};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::sync::Arc;
 
 use super::changes::{compare, say_the_same, with_earlier_tables};
@@ -20,11 +20,14 @@ use crate::store::facts::Facts;
 use crate::store::file::{self, Durability};
 #[cfg(feature = "hdf5")]
 use crate::store::hdf5;
-use crate::store::index::{self, Index, Seen};
+use crate::store::index::{self, Digesting, Index, Seen};
 use crate::store::lock;
 use crate::store::manifest::{FileRecord, Manifest, TableRecord};
 use crate::store::parquet;
 use crate::table::data::Table;
+
+/// Bytes of a manifest that are handed to the system at once.
+const BUFFER: usize = 1 << 17;
 
 /// Gives the Parquet file of (stage, table).
 pub type Bytes<'a> = &'a dyn Fn(&str, &str) -> Result<Vec<u8>, StoreError>;
@@ -273,23 +276,30 @@ impl Folder {
         let (drawn_by, undrawn) = self.put_pages(old.as_ref(), &new, &mut changes, &mut listed, source)?;
         self.remove(&changes.remove)?;
         new.files = listed.files;
-        let text = new.text().map_err(unwritten)?;
-        self.put_manifest(&text, old.is_some(), drawn_by, listed.seen.clone())?;
+        self.put_manifest(|writer| new.write(writer), old.is_some(), drawn_by, listed.seen.clone())?;
         Ok(Published { manifest: new, changes, undrawn, seen: listed.seen })
     }
 
-    /// Writes the index, and then the manifest that says that all is as it should be.
+    /// Writes the index, and then gives its name to the manifest that says that all is as it should be. `fill` writes its text,
+    /// which for thousands of stages is the largest of all that is written, and is never in memory as a whole.
     pub(super) fn put_manifest(
         &self,
-        text: &[u8],
+        fill: impl FnOnce(&mut BufWriter<Digesting<&mut File>>) -> Result<(), serde_json::Error>,
         replaces: bool,
         drawn_by: String,
         seen: Vec<Seen>,
     ) -> Result<(), StoreError> {
-        Index::new(index::digest(text), drawn_by, seen).write(self.path())?;
+        let path = self.path().join(MANIFEST);
         // A manifest that replaces another is there whole, or the other one is: what it lists would be nobody's.
         let durability = if replaces { Durability::Synced } else { Durability::Lazy };
-        file::write(&self.path().join(MANIFEST), text, durability)
+        file::write_by(&path, durability, |file| {
+            let mut writer = BufWriter::with_capacity(BUFFER, Digesting::new(file));
+            let filled = fill(&mut writer).and_then(|()| writer.flush().map_err(serde_json::Error::io));
+            filled.map_err(|error| {
+                if error.is_io() { StoreError::io("write", &path)(error.into()) } else { unwritten(error) }
+            })?;
+            Index::new(writer.get_ref().digest(), drawn_by, seen).write(self.path())
+        })
     }
 
     /// Takes whatever is about to be replaced from the list: if this run is killed, the next one must not take a new file
@@ -337,9 +347,9 @@ impl Folder {
     #[cfg(feature = "hdf5")]
     fn put_hdf5(&self, listed: &mut Listed, manifest: &Manifest) -> Result<(), StoreError> {
         let name = self.hdf5_file();
-        let bytes = hdf5_bytes(&name, manifest, &|record| self.shared(record))?;
         // Its bytes depend on the version of libhdf5 as well.
-        self.put(listed, &name, &bytes, true)
+        let put = |bytes: &[u8]| self.put(listed, &name, bytes, true);
+        hdf5_bytes(&name, manifest, &|record| self.shared(record), put)?
     }
 
     #[cfg(not(feature = "hdf5"))]
@@ -391,17 +401,18 @@ pub(super) fn worse(fault: &mut Option<StoreError>, other: StoreError) {
     }
 }
 
-/// The HDF5 file of all tables, but for those of files, which lie beside it already, and long ones, of which it says so.
+/// Hands on the HDF5 file of all tables, but for those of files, which lie beside it already, and long ones, of which it says so.
 /// `table` gives what is published for a record: of a bundle all of it.
 ///
 /// # Errors
 /// When a table cannot be had, or holds what HDF5 cannot.
 #[cfg(feature = "hdf5")]
-pub fn hdf5_bytes(
+pub fn hdf5_bytes<T>(
     name: &str,
     manifest: &Manifest,
     table: &dyn Fn(&TableRecord) -> Result<Arc<Table>, StoreError>,
-) -> Result<Vec<u8>, StoreError> {
+    take: impl FnOnce(&[u8]) -> T,
+) -> Result<T, StoreError> {
     let mut writer = hdf5::Writer::new(name)?;
     for (group, record) in bundle::published(manifest).filter(|(_, record)| record.files.is_empty()) {
         if bundle::is_long(record.rows) {
@@ -410,7 +421,7 @@ pub fn hdf5_bytes(
         }
         writer.add(group, &*table(record)?)?;
     }
-    writer.finish()
+    writer.finish(take)
 }
 
 #[allow(clippy::needless_pass_by_value)] // for `map_err`

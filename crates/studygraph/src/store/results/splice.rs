@@ -6,6 +6,7 @@
 //! such a run, and nothing was touched. Must not know: the cache, how anything is drawn, who says that files are as they were.
 
 use std::collections::HashMap;
+use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -117,7 +118,8 @@ impl Folder {
         let new = Manifest { files: listed.files, ..new };
         self.remove(&changes.remove)?;
         let text = cut.text_with(&new, &own).map_err(unwritten)?.ok_or_else(|| damaged(&path))?;
-        self.put_manifest(&text, true, drawn_by, listed.seen.clone())?;
+        let seen = listed.seen.clone();
+        self.put_manifest(|writer| writer.write_all(&text).map_err(serde_json::Error::io), true, drawn_by, seen)?;
         Ok(Some(Published { manifest: Manifest { more: shown.more, ..new }, changes, undrawn, seen: listed.seen }))
     }
 
