@@ -80,6 +80,24 @@ impl Spline {
         c0 + t * (c1 + t * (c2 + t * c3))
     }
 
+    /// The values at the ends of so many equal steps between two places, `from` below `to`; outside of its ends those at the ends.
+    #[must_use]
+    pub fn equidistant(&self, [from, to]: [f64; 2], steps: usize) -> Vec<f64> {
+        let [first, last] = self.ends();
+        let width = (to - from) / steps as f64;
+        let mut interval = 0;
+        let value = |step: usize| {
+            let x = (from + width * step as f64).clamp(first, last);
+            while interval + 1 < self.pieces.len() && self.pieces[interval + 1][0] <= x {
+                interval += 1;
+            }
+            let [begin, c0, c1, c2, c3] = self.pieces[interval];
+            let t = x - begin;
+            c0 + t * (c1 + t * (c2 + t * c3))
+        };
+        (0..=steps).map(value).collect()
+    }
+
     /// The slope at every knot.
     #[must_use]
     pub fn slopes(&self) -> Vec<f64> {

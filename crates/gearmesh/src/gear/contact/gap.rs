@@ -9,14 +9,16 @@ use super::separation::{Facing, Touch};
 use crate::gear::geometry::{GearPair, Side};
 use crate::gear::modification::section::Profiles;
 use beyond::Turn;
-use bridge::bridge;
+use bends::are_rough;
 use outline::Outline;
+use rough::Rough;
 
+mod bends;
 mod beyond;
-mod bridge;
 mod convex;
 mod copy;
 mod outline;
+mod rough;
 
 /// Where the search for a minimum stops, in pieces; the error of the gap is of second order in it.
 const PLACE: f64 = 1e-6;
@@ -61,6 +63,8 @@ pub struct Gaps<'a> {
     modified: bool,
     /// Whether no profile bends back.
     is_convex: bool,
+    /// What flanks are searched by that bend back more than the separation bends.
+    rough: Option<Rough>,
 }
 
 #[derive(Clone, Debug)]
@@ -85,14 +89,14 @@ impl<'a> Gaps<'a> {
     #[must_use]
     pub fn new(pair: &GearPair, profiles: &Profiles<'a>) -> Self {
         let gaps = Self::of(pair, profiles);
-        if gaps.is_convex { gaps } else { gaps.thorough() }
+        if gaps.is_convex || gaps.rough.is_some() { gaps } else { gaps.thorough() }
     }
 
     fn of(pair: &GearPair, [pinion, gear]: &Profiles<'a>) -> Self {
         let facings = [Side::Gear, Side::Pinion].map(|side| Facing::new(pair, side));
-        let (mut point, mut flank) = (Outline::new(gear, facings[0], true), Outline::new(pinion, facings[0], false));
-        bridge(&facings[0], &mut point, &mut flank);
-        let is_convex = point.is_convex() && flank.is_convex();
+        let (point, flank) = (Outline::new(gear, facings[0], true), Outline::new(pinion, facings[0], false));
+        let is_rough = are_rough(&facings[0], &point, &flank);
+        let is_convex = !is_rough && point.is_convex() && flank.is_convex();
         let (flank_too, point_too) = (point.mirrored(facings[1]), flank.mirrored(facings[1]));
         let turn = Turn::default();
         let mut ways = [
@@ -103,7 +107,8 @@ impl<'a> Gaps<'a> {
         for way in ways.iter_mut().filter(|way| modified && way.facing.round > 0.0) {
             way.turn = way.turned();
         }
-        Self { ways, modified, is_convex }
+        let rough = is_rough.then(|| Rough::new(pair, &ways));
+        Self { ways, modified, is_convex, rough }
     }
 
     /// For a search that needs no convexity.
@@ -156,6 +161,9 @@ impl<'a> Gaps<'a> {
                 if !self.modified {
                     return (gap, spot);
                 }
+                if let Some(rough) = &self.rough {
+                    return (rough.least(&self.ways, s, gap), spot);
+                }
                 return if self.is_convex {
                     way.descend(nominal, before, way.facing.flank_end(before)).unwrap_or((gap, spot))
                 } else {
@@ -168,6 +176,9 @@ impl<'a> Gaps<'a> {
         }
         if self.is_convex {
             return self.convex(s);
+        }
+        if let Some(rough) = &self.rough {
+            return (rough.least(&self.ways, s, f64::INFINITY), Spot::OnLineOfAction);
         }
         let mut minimum = (self.on_line(s), Spot::OnLineOfAction);
         for way in &self.ways {
@@ -196,7 +207,8 @@ impl<'a> Gaps<'a> {
         known.extend(inner.filter(|s| *s > window.0 && *s < window.1));
         known.sort_by(f64::total_cmp);
         known.dedup();
-        if !self.modified {
+        // Where the contact goes over from one crest to another is told by nothing: there are as many such places as crests.
+        if !self.modified || self.rough.is_some() {
             return known;
         }
         let (start, end) = (facing.start, facing.end);

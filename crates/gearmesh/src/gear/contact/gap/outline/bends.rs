@@ -1,0 +1,95 @@
+//! How far splines bend back, how far profiles bend at all, and their depths at places for a scan.
+//!
+//! Must not know: the other flank.
+
+use super::{Outline, SAMPLES, share};
+use crate::gear::modification::section::Section;
+
+/// Parts of the path in each of which it is known how far a spline bends back.
+pub(in super::super) const PARTS: usize = 32;
+
+impl Outline<'_> {
+    /// Visits all knots of splines that lie on the path: the position, and the second derivative of the profile there, between two knots
+    /// straight; none where a part of it does not know its own.
+    fn visit_bends(&self, mut visit: impl FnMut(f64, f64)) -> Option<()> {
+        let [_, rate] = self.rolls;
+        let (from, to) = (self.facing.start, self.facing.end);
+        let mut put = |roll: f64, bend: f64| {
+            let position = self.position(roll);
+            if (from..=to).contains(&position) {
+                visit(position, bend * rate * rate);
+            }
+        };
+        if let Some(spline) = self.spline {
+            spline.knots().iter().zip(spline.bends()).for_each(|(roll, bend)| put(*roll, bend));
+            return Some(());
+        }
+        for roll in self.parts.iter().flat_map(Section::knots) {
+            put(*roll, self.parts.iter().try_fold(0.0, |sum, part| Some(sum + part.rates(*roll, *roll)?[2]))?);
+        }
+        Some(())
+    }
+
+    /// The least second derivative of a spline in each of equal parts of the path \[1/m\], not above 0; none where a part of the profile
+    /// does not know its own.
+    pub(in super::super) fn least_bends(&self) -> Option<[f64; PARTS]> {
+        let mut least = [0.0_f64; PARTS];
+        if !self.is_sampled {
+            return Some(least);
+        }
+        let (from, to) = (self.facing.start, self.facing.end);
+        self.visit_bends(|position, bend| {
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a share
+            let part = (((position - from) / (to - from) * PARTS as f64) as usize).min(PARTS - 1);
+            least[part] = least[part].min(bend);
+        })?;
+        Some(least)
+    }
+
+    /// The least second derivative anywhere \[1/m\], not above 0, if it is known at once.
+    pub(in super::super) fn least_bend(&self) -> Option<f64> {
+        let [_, rate] = self.rolls;
+        match self.spline {
+            Some(spline) => Some((spline.least_bend() * rate * rate).min(0.0)),
+            None => (!self.is_sampled).then_some(0.0),
+        }
+    }
+
+    /// The largest second derivative \[1/m\], not below 0, as far as knots and a few places of every piece tell.
+    pub(in super::super) fn most_bend(&self) -> f64 {
+        let mut most = 0.0_f64;
+        let is_known = self.visit_bends(|_, bend| most = most.max(bend)).is_some();
+        if self.spline.is_some() {
+            return most;
+        }
+        let count = if is_known { SAMPLES } else { super::WAVE_SAMPLES };
+        for (piece, ends) in self.cuts.windows(2).enumerate() {
+            let bends = (0..=count).map(|at| self.rates(share(ends, at, count), piece)[2]);
+            most = bends.fold(most, f64::max);
+        }
+        most
+    }
+
+    /// By how much the slope grows at a cut, at the most, not below 0.
+    pub(in super::super) fn most_kink(&self) -> f64 {
+        let kink = |cut: usize| self.rates(self.cuts[cut], cut)[1] - self.rates(self.cuts[cut], cut - 1)[1];
+        (1..self.pieces()).map(kink).fold(0.0, f64::max)
+    }
+
+    /// Between which positions it lies.
+    pub(in super::super) fn range(&self) -> [f64; 2] {
+        [self.facing.start, self.facing.end]
+    }
+
+    /// The depths at the ends of so many equal steps from one end to the other.
+    pub(in super::super) fn depths(&self, steps: usize) -> Vec<f64> {
+        let ends = self.range();
+        match self.spline {
+            Some(spline) if !self.is_point => {
+                let [from, to] = ends.map(|end| self.roll(end));
+                spline.equidistant([from, to], steps)
+            }
+            _ => (0..=steps).map(|at| self.depth(share(&ends, at, steps))).collect(),
+        }
+    }
+}
