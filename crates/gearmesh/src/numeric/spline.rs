@@ -12,8 +12,8 @@ pub struct Spline {
     /// The lower end of each interval, and the cubic of the distance from there: beside each other, since a search reads both.
     pieces: Vec<[f64; 5]>,
     index: Index,
-    /// The least second derivative.
-    least_bend: f64,
+    /// The least and the largest second derivative.
+    bends_between: [f64; 2],
 }
 
 impl Spline {
@@ -34,8 +34,9 @@ impl Spline {
             [knots[at], values[at], slopes[at], (secant - slopes[at]) / step - bend, bend / step]
         };
         let pieces = (0..steps.len()).map(cubic).collect();
-        let mut spline = Self { knots: knots.to_vec(), pieces, index: Index::new(knots), least_bend: 0.0 };
-        spline.least_bend = spline.bends().fold(f64::INFINITY, f64::min);
+        let mut spline = Self { knots: knots.to_vec(), pieces, index: Index::new(knots), bends_between: [0.0; 2] };
+        let none = [f64::INFINITY, f64::NEG_INFINITY];
+        spline.bends_between = spline.bends().fold(none, |[least, most], bend| [least.min(bend), most.max(bend)]);
         spline
     }
 
@@ -48,7 +49,13 @@ impl Spline {
     /// The least second derivative.
     #[must_use]
     pub fn least_bend(&self) -> f64 {
-        self.least_bend
+        self.bends_between[0]
+    }
+
+    /// The largest second derivative.
+    #[must_use]
+    pub fn most_bend(&self) -> f64 {
+        self.bends_between[1]
     }
 
     /// The first and the last knot.
@@ -80,22 +87,23 @@ impl Spline {
         c0 + t * (c1 + t * (c2 + t * c3))
     }
 
-    /// The values at the ends of so many equal steps between two places, `from` below `to`; outside of its ends those at the ends.
+    /// The values at so many places from `first` on, in equal steps upwards; outside of its ends those at the ends.
     #[must_use]
-    pub fn equidistant(&self, [from, to]: [f64; 2], steps: usize) -> Vec<f64> {
-        let [first, last] = self.ends();
-        let width = (to - from) / steps as f64;
-        let mut interval = 0;
-        let value = |step: usize| {
-            let x = (from + width * step as f64).clamp(first, last);
-            while interval + 1 < self.pieces.len() && self.pieces[interval + 1][0] <= x {
-                interval += 1;
+    pub fn equidistant(&self, [first, step]: [f64; 2], count: usize) -> Vec<f64> {
+        let ends = self.ends();
+        let mut values = Vec::with_capacity(count);
+        let mut pieces = self.pieces.iter().peekable();
+        let mut piece = self.pieces[0];
+        for at in 0..count {
+            let x = (first + step * at as f64).clamp(ends[0], ends[1]);
+            while let Some(next) = pieces.next_if(|next| next[0] <= x) {
+                piece = *next;
             }
-            let [begin, c0, c1, c2, c3] = self.pieces[interval];
+            let [begin, c0, c1, c2, c3] = piece;
             let t = x - begin;
-            c0 + t * (c1 + t * (c2 + t * c3))
-        };
-        (0..=steps).map(value).collect()
+            values.push(c0 + t * (c1 + t * (c2 + t * c3)));
+        }
+        values
     }
 
     /// The slope at every knot.
@@ -139,7 +147,7 @@ impl Index {
     fn interval(&self, count: usize, x: f64, begins: impl Fn(usize) -> f64) -> usize {
         let last = count - 1;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // what is too large is the last one
-        let cell = (((x - self.from) * self.per_length).max(0.0) as usize).min(last);
+        let cell = (((x - self.from) * self.per_length) as u32 as usize).min(last);
         let mut interval = self.first[cell] as usize;
         while interval < last && begins(interval + 1) <= x {
             interval += 1;

@@ -7,19 +7,19 @@
 
 use super::Way;
 use crate::gear::geometry::GearPair;
-use depths::Depths;
-use scan::{BLOCK, Scan};
+use depths::{BLOCK, Depths};
+use scan::{Edge, Scan, WITH_NEIGHBOURS};
 
 mod depths;
 mod scan;
 
 /// By how much the gap may be lower between two places of the scan than at both \[m\]: it says how near they are.
-const BETWEEN: f64 = 40e-9;
-/// The fewest and the most steps of a scan along a flank.
+const BETWEEN: f64 = 100e-9;
+/// The fewest and the most steps of a scan along the path.
 const FEWEST: f64 = 256.0;
 const MOST: f64 = 65_536.0;
 /// What may be left of the gap to fall \[m\], of which a parabola tells all but a hundredth.
-const NEGLIGIBLE: f64 = 1e-11;
+const NEGLIGIBLE: f64 = 1e-10;
 /// The most steps of Newton's method and of halving.
 const MOST_STEPS: usize = 48;
 /// How near two places between which the gap is lowest are one, over the steps of a scan.
@@ -31,6 +31,7 @@ const WAITING: usize = 16;
 #[derive(Clone, Debug)]
 pub(super) struct Rough {
     depths: [Depths; 2],
+    step: f64,
     base_radii: [f64; 2],
     tangent_length: f64,
     /// By how much the gap may be lower between two places than at both \[m\].
@@ -43,11 +44,23 @@ struct Search<'a, 'b> {
     scan: Scan<'b>,
     s: f64,
     between: f64,
-    /// The least gap that was found, and the least that is known of a place that waits.
+    step: f64,
+    /// The least gap that was found, and the least of a place that waits.
     least: f64,
     seen: f64,
-    waiting: [(f64, usize); WAITING],
+    /// The gap there, and the number of the place.
+    waiting: [[f64; 2]; WAITING],
     count: usize,
+}
+
+/// Blocks of places in one direction from the nominal point.
+struct Direction {
+    is_up: bool,
+    block: usize,
+    /// The edge that is nearer to the nominal point.
+    near: Edge,
+    /// What the gap was at least by the hulls of both flanks, in the block before.
+    before: f64,
 }
 
 impl Rough {
@@ -56,100 +69,105 @@ impl Rough {
         let length = pair.tangent_length;
         // Each flank before points of the other one, over its own roll length.
         let flanks = [&ways[0].flank, &ways[1].flank];
-        let range = flanks[0].range();
+        let [from, to] = flanks[0].range();
         // How much the separation bends along the flank that leads.
         let bend = |s: f64| {
             let along = |own: f64, radius: f64| own / radius * (own / radius) * (1.0 / s + 1.0 / (length - s));
             along(s, base_radii[0]).min(along(length - s, base_radii[1]))
         };
-        let of_separation = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| bend(range[0] + share * (range[1] - range[0])));
+        let of_separation = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| bend(from + share * (to - from)));
         let bends = of_separation.into_iter().fold(0.0, f64::max) + flanks[0].most_bend() + flanks[1].most_bend();
         let kinks = flanks[0].most_kink() + flanks[1].most_kink();
-        let step = (4.0 * BETWEEN / bends).sqrt();
-        let depths = flanks.map(|flank| {
-            let [from, to] = flank.range();
-            Depths::new(flank, ((to - from) / step).clamp(FEWEST, MOST))
-        });
-        let step = depths[0].step.max(depths[1].step);
+        let step = (4.0 * BETWEEN / bends).sqrt().clamp((to - from) / MOST, (to - from) / FEWEST);
         // What a function falls by between two places, and what lines between the other flank's places are off.
         let between = step * (0.25 * step * bends + 0.5 * kinks);
-        Self { depths, base_radii, tangent_length: length, between }
+        let depths = flanks.map(|flank| Depths::new(flank, step));
+        Self { depths, step, base_radii, tangent_length: length, between }
     }
 
     /// The least of a gap and of those at all places of both flanks.
     pub(super) fn least(&self, ways: &[Way; 2], s: f64, gap: f64) -> f64 {
-        let Some(scan) = self.scan(ways, s) else { return gap };
-        let (between, waiting) = (self.between, [(0.0, 0); WAITING]);
-        Search { ways, scan, s, between, least: gap, seen: gap, waiting, count: 0 }.run()
-    }
-
-    fn scan(&self, ways: &[Way; 2], s: f64) -> Option<Scan<'_>> {
         let beyond = ways.iter().enumerate().find_map(|(flank, way)| {
             let before = way.facing.start - way.facing.turned(way.side, s);
             (before > 0.0).then(|| (flank, way.facing.flank_end(before)))
         });
-        Scan::new(&self.depths, self.base_radii, [s, self.tangent_length - s], beyond)
+        let own = [s, self.tangent_length - s];
+        let Some(scan) = Scan::new(&self.depths, self.base_radii, own, beyond) else { return gap };
+        let Self { between, step, .. } = *self;
+        let waiting = [[0.0; 2]; WAITING];
+        Search { ways, scan, s, between, step, least: gap, seen: gap, waiting, count: 0 }.run()
     }
 }
 
 impl Search<'_, '_> {
     fn run(mut self) -> f64 {
-        for end in self.scan.range {
-            if self.scan.at_least(end) < self.least + self.between {
-                self.offer_end(end);
-            }
-        }
         let [first, last] = self.scan.blocks();
         let middle = self.scan.nearest_block().clamp(first, last);
-        for distance in 0..=last.max(middle) {
-            let mut is_near = false;
-            let below = if distance > 0 { middle.checked_sub(distance) } else { None };
-            for block in [below, Some(middle + distance)].into_iter().flatten() {
-                if block >= first && block <= last {
-                    is_near |= self.look_at(block);
-                }
-            }
-            if !is_near {
-                break;
-            }
+        self.look_at(middle);
+        let up = Direction { is_up: true, block: middle, near: self.scan.edge(middle + 1), before: f64::NEG_INFINITY };
+        let down = Direction { is_up: false, near: self.scan.edge(middle), ..up };
+        let (mut up, mut down) = (Some(up), Some(down));
+        while up.is_some() || down.is_some() {
+            up = up.and_then(|direction| self.go_on(direction, [first, last]));
+            down = down.and_then(|direction| self.go_on(direction, [first, last]));
         }
         self.follow_those_that_wait();
         self.least
     }
 
-    /// Looks at a block of places. Whether anything that far away can be the lowest.
-    fn look_at(&mut self, block: usize) -> bool {
+    /// Looks at the next block in a direction, as long as anything farther in it can be the lowest: what both hulls and the separation make
+    /// together is convex.
+    fn go_on(&mut self, from: Direction, [first, last]: [usize; 2]) -> Option<Direction> {
+        let Direction { is_up, block, near, before } = from;
+        if block == if is_up { last } else { first } {
+            self.offer_end(self.scan.range[usize::from(is_up)]);
+            return None;
+        }
+        let block = if is_up { block + 1 } else { block - 1 };
+        let far = self.scan.edge(if is_up { block + 1 } else { block });
+        let [least, hull] = self.scan.at_least(block, &near, &far);
         let reach = self.seen + self.between;
-        let [separation, lowest] = self.scan.bounds(block);
-        if separation + self.scan.lowest() >= reach {
-            return false;
+        if hull >= reach && hull >= before {
+            return None;
         }
-        if separation + lowest >= reach {
-            return true;
+        if least < reach {
+            self.look_at(block);
         }
+        Some(Direction { block, near: far, before: hull, ..from })
+    }
+
+    /// Lets the places of a block wait that may be the lowest.
+    fn look_at(&mut self, block: usize) {
         let values = self.scan.values(block);
-        for place in 1..=BLOCK {
-            let value = values[place];
-            if value < self.seen + self.between && value <= values[place - 1] && value < values[place + 1] {
-                self.seen = self.seen.min(value);
+        let least = values[1..=BLOCK].iter().fold(f64::INFINITY, |least, value| if *value < least { *value } else { least });
+        if least >= self.seen + self.between {
+            return;
+        }
+        for place in 1..WITH_NEIGHBOURS - 1 {
+            let [before, value, after] = [values[place - 1], values[place], values[place + 1]];
+            if value < self.seen + self.between && value <= before && value < after {
                 if self.count == WAITING {
                     self.follow_those_that_wait();
                 }
-                self.waiting[self.count] = (value, block * BLOCK + place - 1);
+                self.seen = self.seen.min(value);
+                // The lowest place of the parabola through the three.
+                let bend = before - 2.0 * value + after;
+                let vertex = if bend < f64::INFINITY { 0.5 * (before - after) / bend } else { 0.0 };
+                self.waiting[self.count] = [value, (block * BLOCK + place - 1) as f64 + vertex];
                 self.count += 1;
             }
         }
-        true
     }
 
     fn follow_those_that_wait(&mut self) {
-        let mut waiting = self.waiting;
-        let waiting = &mut waiting[..self.count];
-        waiting.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
-        for (value, place) in waiting {
-            if *value < self.least + self.between {
-                self.follow(*place);
+        while let Some(next) = (0..self.count).min_by(|one, other| self.waiting[*one][0].total_cmp(&self.waiting[*other][0])) {
+            let [value, number] = self.waiting[next];
+            if value >= self.least + self.between {
+                break;
             }
+            self.count -= 1;
+            self.waiting[next] = self.waiting[self.count];
+            self.follow(number);
         }
         self.count = 0;
         self.seen = self.least;
@@ -172,55 +190,45 @@ impl Search<'_, '_> {
     }
 
     /// From one place of the scan down to the lowest one beside it.
-    fn follow(&mut self, number: usize) {
-        let [lower, at, upper] = self.scan.around(number).map(|place| self.scan.place(place));
-        // Beside the line of action, the way is that on which the gap falls from there.
-        let is_beside = lower.0 != upper.0;
-        let way = if is_beside { usize::from(self.pull(0, 0.0)[1] >= 0.0) } else { at.0 };
-        let facing = &self.ways[way].facing;
-        let nominal = facing.turned(self.ways[way].side, self.s);
-        let (mut low, mut high) = ((facing.start - nominal).max(0.0), facing.end - nominal);
-        let mut at = if at.0 == way { at.1.clamp(low, high) } else { low };
-        let farthest = (upper.1 - lower.1).abs().max(lower.1.max(upper.1) * f64::from(u8::from(is_beside)));
+    fn follow(&mut self, number: f64) {
+        let (mut way, mut at) = self.scan.place(self.scan.at(number));
+        let ends = |way: &Way, s: f64| {
+            let nominal = way.facing.turned(way.side, s);
+            ((way.facing.start - nominal).max(0.0), way.facing.end - nominal)
+        };
+        let (mut low, mut high) = ends(&self.ways[way], self.s);
+        let (mut may_turn, farthest) = (low <= 0.0, 2.0 * self.step);
         for _ in 0..MOST_STEPS {
             let [gap, slope, bend] = self.pull(way, at);
             self.least = self.least.min(gap);
-            let down = if slope < 0.0 { 1.0 } else { -1.0 };
-            *(if slope < 0.0 { &mut low } else { &mut high }) = at;
-            let step = if bend > 0.0 { (-slope / bend).clamp(-farthest, farthest) } else { down * farthest };
-            let next = at + step;
-            if bend > 0.0 && (slope * step).abs() <= NEGLIGIBLE {
-                self.least = self.least.min(gap + 0.5 * slope * step);
+            if slope >= 0.0 && at <= 0.0 {
+                if !may_turn {
+                    break;
+                }
+                // It falls from the line of action to the other side of it, or nowhere.
+                (way, may_turn) = (1 - way, false);
+                (low, high) = ends(&self.ways[way], self.s);
+                at = low;
+                continue;
+            }
+            let newton = if bend > 0.0 { -slope / bend } else { farthest.copysign(-slope) };
+            if bend > 0.0 && (slope * newton).abs() <= NEGLIGIBLE && newton >= low - at {
+                self.least = self.least.min(gap + 0.5 * slope * newton);
                 break;
             }
+            *(if slope < 0.0 { &mut low } else { &mut high }) = at;
             if high - low <= CLOSEST * farthest {
                 break;
             }
-            at = if next > low && next < high { next } else { 0.5 * (low + high) };
+            let next = at + newton.clamp(-farthest, farthest);
+            at = if next > low && next < high {
+                next
+            } else if next <= low && may_turn {
+                0.0
+            } else {
+                0.5 * (low + high)
+            };
         }
         self.seen = self.seen.min(self.least);
-    }
-}
-impl Rough {
-    #[cfg(test)]
-    pub(super) fn debug(&self, ways: &[Way; 2], s: f64) {
-        let scan = self.scan(ways, s).unwrap();
-        let [first, last] = scan.blocks();
-        println!("step {:e} between {:e} blocks {first} {last} middle {}", self.depths[0].step, self.between, scan.nearest_block());
-        let mut low = f64::INFINITY;
-        for block in first..=last { for v in &scan.values(block)[1..=BLOCK] { low = low.min(*v); } }
-        for block in first..=last {
-            let values = scan.values(block);
-            for place in 1..=BLOCK {
-                if values[place] < low + 2e-7 {
-                    let number = block * BLOCK + place - 1;
-                    let mut search = Search { ways, scan, s, between: self.between, least: f64::INFINITY, seen: f64::INFINITY, waiting: [(0.0, 0); WAITING], count: 0 };
-                    let (way, before) = scan.place(scan.around(number)[1]);
-                    let exact = search.pull(way, before);
-                    search.follow(number);
-                    println!("  {number} {:e} way {way} before {before:e} exact {exact:?} followed {:e} bounds {:?}", values[place], search.least, scan.bounds(block));
-                }
-            }
-        }
     }
 }

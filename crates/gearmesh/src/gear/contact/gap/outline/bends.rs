@@ -12,10 +12,11 @@ impl Outline<'_> {
     /// Visits all knots of splines that lie on the path: the position, and the second derivative of the profile there, between two knots
     /// straight; none where a part of it does not know its own.
     fn visit_bends(&self, mut visit: impl FnMut(f64, f64)) -> Option<()> {
-        let [_, rate] = self.rolls;
+        let [at_zero, rate] = self.rolls;
         let (from, to) = (self.facing.start, self.facing.end);
+        let per_roll = 1.0 / rate;
         let mut put = |roll: f64, bend: f64| {
-            let position = self.position(roll);
+            let position = (roll - at_zero) * per_roll;
             if (from..=to).contains(&position) {
                 visit(position, bend * rate * rate);
             }
@@ -38,9 +39,10 @@ impl Outline<'_> {
             return Some(least);
         }
         let (from, to) = (self.facing.start, self.facing.end);
+        let per_part = PARTS as f64 / (to - from);
         self.visit_bends(|position, bend| {
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a share
-            let part = (((position - from) / (to - from) * PARTS as f64) as usize).min(PARTS - 1);
+            let part = (((position - from) * per_part) as usize).min(PARTS - 1);
             least[part] = least[part].min(bend);
         })?;
         Some(least)
@@ -57,11 +59,12 @@ impl Outline<'_> {
 
     /// The largest second derivative \[1/m\], not below 0, as far as knots and a few places of every piece tell.
     pub(in super::super) fn most_bend(&self) -> f64 {
+        if let Some(spline) = self.spline {
+            let [_, rate] = self.rolls;
+            return (spline.most_bend() * rate * rate).max(0.0);
+        }
         let mut most = 0.0_f64;
         let is_known = self.visit_bends(|_, bend| most = most.max(bend)).is_some();
-        if self.spline.is_some() {
-            return most;
-        }
         let count = if is_known { SAMPLES } else { super::WAVE_SAMPLES };
         for (piece, ends) in self.cuts.windows(2).enumerate() {
             let bends = (0..=count).map(|at| self.rates(share(ends, at, count), piece)[2]);
@@ -81,15 +84,13 @@ impl Outline<'_> {
         [self.facing.start, self.facing.end]
     }
 
-    /// The depths at the ends of so many equal steps from one end to the other.
-    pub(in super::super) fn depths(&self, steps: usize) -> Vec<f64> {
-        let ends = self.range();
-        match self.spline {
-            Some(spline) if !self.is_point => {
-                let [from, to] = ends.map(|end| self.roll(end));
-                spline.equidistant([from, to], steps)
-            }
-            _ => (0..=steps).map(|at| self.depth(share(&ends, at, steps))).collect(),
+    /// The depths at so many places in equal steps, beyond its ends those at its ends.
+    pub(in super::super) fn depths(&self, [first, step]: [f64; 2], count: usize) -> Vec<f64> {
+        if let (Some(spline), false) = (self.spline, self.is_point) {
+            let [_, rate] = self.rolls;
+            return spline.equidistant([self.roll(first), step * rate], count);
         }
+        let [from, to] = self.range();
+        (0..count).map(|at| self.depth((first + step * at as f64).clamp(from, to))).collect()
     }
 }

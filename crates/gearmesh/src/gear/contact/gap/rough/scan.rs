@@ -5,13 +5,11 @@
 //! both to the second order in that angle. As S is a turn of the flank before the point, its roll length is longer by S: that of
 //! the two which grows. The flank whose roll length changes faster leads, in equal steps. Must not know: how places are followed.
 
-use super::depths::Depths;
+use super::depths::{BLOCK, Depths};
 use crate::gear::contact::separation::Touch;
 
-/// Places that are looked at together.
-pub(super) const BLOCK: usize = 8;
-/// With one more on either side.
-const WITH_NEIGHBOURS: usize = BLOCK + 2;
+/// The places of a block, with one more on either side.
+pub(super) const WITH_NEIGHBOURS: usize = BLOCK + 2;
 
 /// Both flanks at one path position.
 #[derive(Clone, Copy, Debug)]
@@ -28,12 +26,20 @@ pub(super) struct Scan<'a> {
     /// The separation, of the squares and the third powers of the distances from the nominal roll lengths.
     squares: [f64; 2],
     cubes: [f64; 2],
-    /// Between which roll lengths of the one that leads both flanks have points.
-    pub(super) range: [f64; 2],
-    /// The first and the last place between them.
-    numbers: [usize; 2],
-    /// Beyond the ends of contact, far from the nominal point: what separation and roll length of what follows are more.
+    /// Beyond the ends of contact, far from the nominal point: what roll length of what follows and separation are more.
     more: [f64; 2],
+    /// Between which roll lengths of the one that leads both flanks have points, and between which numbers of places.
+    pub(super) range: [f64; 2],
+    numbers: [f64; 2],
+}
+
+/// Where a block begins or ends.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge {
+    /// The block of what follows.
+    block: usize,
+    /// The separation.
+    apart: f64,
 }
 
 impl<'a> Scan<'a> {
@@ -46,55 +52,60 @@ impl<'a> Scan<'a> {
         end: Option<(usize, Touch)>,
     ) -> Option<Self> {
         let leading = usize::from(own[0] * base_radii[1] > own[1] * base_radii[0]);
-        let [leads, follows] = [leading, 1 - leading].map(|side| &depths[side]);
-        let [radius, other] = [leading, 1 - leading].map(|side| base_radii[side]);
-        let nominal = [own[leading], own[1 - leading]];
+        let following = 1 - leading;
+        let (leads, follows) = (&depths[leading], &depths[following]);
+        let (radius, other) = (base_radii[leading], base_radii[following]);
+        let nominal = [own[leading], own[following]];
         let ratio = other / radius;
         let sum = nominal[1] * nominal[1] + ratio * nominal[0] * nominal[0];
-        let against = |follows: f64| ((sum - follows * follows) / ratio).max(0.0).sqrt();
-        let mut range = [leads.first.max(against(follows.last)), leads.last.min(against(follows.first))];
-        let squares = [0.5 * nominal[0] / (radius * radius), 0.5 * nominal[1] / (other * other)];
-        let cubes = [1.0 / (3.0 * radius * radius), 1.0 / (3.0 * other * other)];
+        let against = |follows: f64| root((sum - follows * follows) / ratio);
+        let mut range =
+            [larger(leads.range[0], against(follows.range[1])), smaller(leads.range[1], against(follows.range[0]))];
+        let (mut squares, mut cubes) = ([0.0; 2], [0.0; 2]);
+        for (at, radius) in [radius, other].into_iter().enumerate() {
+            let per_square = 1.0 / (radius * radius);
+            (squares[at], cubes[at]) = (0.5 * nominal[at] * per_square, per_square / 3.0);
+        }
         let known = end.map(|(flank, touch)| {
-            let tip = depths[1 - flank].last;
-            let [leads, follows] = if flank == leading { [touch.curvature, tip] } else { [tip, touch.curvature] };
+            let tip = depths[1 - flank].range[1];
+            let (leads, follows) = if flank == leading { (touch.curvature, tip) } else { (tip, touch.curvature) };
             range[usize::from(nominal[0] > leads)] = leads;
             (leads, follows, touch.separation)
         });
         if range[0] > range[1] {
             return None;
         }
-        let numbers = [leads.number(range[0]).ceil(), leads.number(range[1]).floor()];
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // within the table
-        let numbers = numbers.map(|number| number as usize);
+        let numbers = [leads.number(range[0]), leads.number(range[1])];
         let more = [0.0; 2];
-        let scan = Self { leads, follows, leading, nominal, ratio, sum, squares, cubes, range, numbers, more };
-        let Some((leads, follows, separation)) = known else { return Some(scan) };
-        let [near, apart] = scan.opposite(leads, scan.growth(leads));
-        Some(Self { more: [follows - near, separation - apart], ..scan })
+        let mut scan = Self { leads, follows, leading, nominal, ratio, sum, squares, cubes, more, range, numbers };
+        if let Some((leads, follows, separation)) = known {
+            let [near, apart] = scan.opposite(leads, scan.growth(leads));
+            scan.more = [follows - near, separation - apart];
+        }
+        Some(scan)
     }
 
     /// The first and the last block of places.
     pub(super) fn blocks(&self) -> [usize; 2] {
-        [self.numbers[0] / BLOCK, self.numbers[1].max(self.numbers[0]) / BLOCK]
+        let [first, last] = self.range;
+        [self.leads.block(first), self.leads.block(last).min(self.leads.count() - 2)]
     }
 
     /// The block of the nominal point.
     pub(super) fn nearest_block(&self) -> usize {
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // of what is below, the first one
-        let number = self.leads.number(self.nominal[0]).max(0.0) as usize;
-        number / BLOCK
+        self.leads.block(self.nominal[0])
     }
 
     /// The roll length of what follows, if the flanks did not stand apart.
     #[inline]
     fn following(&self, leads: f64) -> f64 {
-        (self.sum - self.ratio * leads * leads).max(0.0).sqrt()
+        root(self.sum - self.ratio * leads * leads)
     }
 
     /// By how much the roll length of what follows is larger since the flanks stand apart, over that distance.
+    #[inline]
     fn growth(&self, leads: f64) -> f64 {
-        if leads < self.nominal[0] { 1.0 } else { self.ratio * leads / self.following(leads).max(f64::MIN_POSITIVE) }
+        if leads < self.nominal[0] { 1.0 } else { self.ratio * leads / larger(self.following(leads), f64::MIN_POSITIVE) }
     }
 
     /// The roll length of what follows, and the separation.
@@ -102,67 +113,84 @@ impl<'a> Scan<'a> {
     fn opposite(&self, leads: f64, growth: f64) -> [f64; 2] {
         let follows = self.following(leads);
         let (one, other) = (leads - self.nominal[0], follows - self.nominal[1]);
-        let [square, cube] = [self.squares, self.cubes];
-        let apart =
-            one * one * (square[0] + cube[0] * one) + other * other * (square[1] + cube[1] * other) + self.more[1];
+        let apart = one * one * (self.squares[0] + self.cubes[0] * one)
+            + other * other * (self.squares[1] + self.cubes[1] * other)
+            + self.more[1];
         [follows + growth * apart + self.more[0], apart]
     }
 
-    /// The least that both flanks take off anywhere.
-    pub(super) fn lowest(&self) -> f64 {
-        self.leads.least + self.follows.least
-    }
-
-    /// What the gap is not less than at a place.
-    pub(super) fn at_least(&self, leads: f64) -> f64 {
-        self.opposite(leads, 0.0)[1] + self.lowest()
-    }
-
-    /// The least separation in a block, and the least that both flanks take off there.
+    /// Where a block begins.
     #[inline(never)]
-    pub(super) fn bounds(&self, block: usize) -> [f64; 2] {
-        let ends = [block * BLOCK, (block + 1) * BLOCK].map(|number| self.leads.place(number));
-        let opposite = ends.map(|end| self.opposite(end, self.growth(end)));
-        let is_inside = ends[0] <= self.nominal[0] && ends[1] >= self.nominal[0];
-        let apart = if is_inside { 0.0 } else { opposite[usize::from(ends[1] < self.nominal[0])][1] };
-        let follows = opposite.map(|opposite| opposite[0]);
-        [apart, self.leads.least_of(block) + self.follows.least_between([follows[1], follows[0]])]
+    pub(super) fn edge(&self, block: usize) -> Edge {
+        let leads = self.leads.place((block * BLOCK) as f64);
+        let [follows, apart] = self.opposite(leads, self.growth(leads));
+        Edge { block: self.follows.block(follows), apart }
     }
 
-    /// The gap at all places of a block, with one more on either side; without bound where there is none.
+    /// What the gap is not less than in a block, one edge of which is nearer to the nominal point, and what the lower hulls of both flanks
+    /// make of it.
+    #[inline]
+    pub(super) fn at_least(&self, block: usize, near: &Edge, far: &Edge) -> [f64; 2] {
+        let ([one, one_hull], [other, other_hull]) =
+            (self.follows.least_of(near.block), self.follows.least_of(far.block));
+        let [least, hull] = self.leads.least_of(block);
+        [near.apart + least + smaller(one, other), near.apart + hull + smaller(one_hull, other_hull)]
+    }
+
+    /// The gap at all places of a block, with one more on either side; without bound where both flanks have none.
     #[inline(never)]
     pub(super) fn values(&self, block: usize) -> [f64; WITH_NEIGHBOURS] {
-        let from = self.leads.place(block * BLOCK) - self.leads.step;
-        let (mut values, mut follows) = ([0.0; WITH_NEIGHBOURS], [0.0; WITH_NEIGHBOURS]);
+        let first = block * BLOCK - 1;
+        let from = self.leads.place(first as f64);
+        let step = self.leads.place(first as f64 + 1.0) - from;
         let growth = self.growth(from);
+        let (mut values, mut numbers) = ([0.0; WITH_NEIGHBOURS], [0.0; WITH_NEIGHBOURS]);
         for at in 0..WITH_NEIGHBOURS {
-            let [other, apart] = self.opposite(from + self.leads.step * at as f64, growth);
+            let [follows, apart] = self.opposite(from + step * at as f64, growth);
             values[at] = apart;
-            follows[at] = self.follows.number(other).max(0.0);
+            numbers[at] = self.follows.number(follows);
         }
-        let first = block * BLOCK;
+        let depths = &self.leads.from(first)[..WITH_NEIGHBOURS];
         for at in 0..WITH_NEIGHBOURS {
-            let number = first + at;
-            values[at] = if number > self.numbers[0] && number <= self.numbers[1] + 1 {
-                values[at] + self.leads.at(number - 1) + self.follows.between(follows[at])
-            } else {
-                f64::INFINITY
-            };
+            values[at] += depths[at][0] + self.follows.between(numbers[at]);
+        }
+        let [low, high] = [self.numbers[0] - first as f64, self.numbers[1] - first as f64];
+        if low > 0.0 || high < (WITH_NEIGHBOURS - 1) as f64 {
+            for (at, value) in values.iter_mut().enumerate() {
+                if (at as f64) < low || (at as f64) > high {
+                    *value = f64::INFINITY;
+                }
+            }
         }
         values
     }
 
-    /// A place and its neighbours, as far as both flanks have points there.
-    pub(super) fn around(&self, number: usize) -> [f64; 3] {
-        let at = self.leads.place(number);
-        [at - self.leads.step, at, at + self.leads.step].map(|place| place.clamp(self.range[0], self.range[1]))
-    }
-
     /// Which way off the line of action a place is, of the gear's points before the pinion's flank or the reverse, and how far.
     pub(super) fn place(&self, leads: f64) -> (usize, f64) {
+        let leads = leads.clamp(self.range[0], self.range[1]);
         let ahead = [leads - self.nominal[0], self.opposite(leads, self.growth(leads))[0] - self.nominal[1]];
-        // Of the pinion and the gear.
         let [pinion, gear] = [ahead[self.leading], ahead[1 - self.leading]];
-        if pinion >= 0.0 { (0, (-gear).max(0.0)) } else { (1, -pinion) }
+        if pinion >= 0.0 { (0, larger(-gear, 0.0)) } else { (1, -pinion) }
     }
+
+    /// The roll length at a number of a place.
+    pub(super) fn at(&self, number: f64) -> f64 {
+        self.leads.place(number)
+    }
+}
+
+/// As these are one instruction.
+#[inline]
+fn larger(one: f64, other: f64) -> f64 {
+    if one > other { one } else { other }
+}
+
+#[inline]
+fn smaller(one: f64, other: f64) -> f64 {
+    if one < other { one } else { other }
+}
+
+#[inline]
+fn root(square: f64) -> f64 {
+    larger(square, 0.0).sqrt()
 }
