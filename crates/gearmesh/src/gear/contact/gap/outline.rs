@@ -299,6 +299,9 @@ impl<'a> Outline<'a> {
     }
 
     pub(super) fn piece(&self, position: f64) -> usize {
+        if self.pieces.len() == 1 {
+            return 0;
+        }
         let cuts = &self.cuts[1..self.cuts.len() - 1];
         cuts.partition_point(|cut| *cut <= position)
     }

@@ -19,7 +19,7 @@ const BETWEEN: f64 = 100e-9;
 const FEWEST: f64 = 256.0;
 const MOST: f64 = 65_536.0;
 /// What may be left of the gap to fall \[m\], of which a parabola tells all but a hundredth.
-const NEGLIGIBLE: f64 = 1e-10;
+const NEGLIGIBLE: f64 = 1e-9;
 /// The most steps of Newton's method and of halving.
 const MOST_STEPS: usize = 48;
 /// How near two places between which the gap is lowest are one, over the steps of a scan.
@@ -103,9 +103,10 @@ impl Search<'_, '_> {
     fn run(mut self) -> f64 {
         let [first, last] = self.scan.blocks();
         let middle = self.scan.nearest_block().clamp(first, last);
-        self.look_at(middle);
-        let up = Direction { is_up: true, block: middle, near: self.scan.edge(middle + 1), before: f64::NEG_INFINITY };
-        let down = Direction { is_up: false, near: self.scan.edge(middle), ..up };
+        let edges = [self.scan.edge(middle), self.scan.edge(middle + 1)];
+        self.look_at(middle, [&edges[0], &edges[1]]);
+        let up = Direction { is_up: true, block: middle, near: edges[1], before: f64::NEG_INFINITY };
+        let down = Direction { is_up: false, near: edges[0], ..up };
         let (mut up, mut down) = (Some(up), Some(down));
         while up.is_some() || down.is_some() {
             up = up.and_then(|direction| self.go_on(direction, [first, last]));
@@ -117,6 +118,7 @@ impl Search<'_, '_> {
 
     /// Looks at the next block in a direction, as long as anything farther in it can be the lowest: what both hulls and the separation make
     /// together is convex.
+    #[inline]
     fn go_on(&mut self, from: Direction, [first, last]: [usize; 2]) -> Option<Direction> {
         let Direction { is_up, block, near, before } = from;
         if block == if is_up { last } else { first } {
@@ -131,14 +133,14 @@ impl Search<'_, '_> {
             return None;
         }
         if least < reach {
-            self.look_at(block);
+            self.look_at(block, if is_up { [&near, &far] } else { [&far, &near] });
         }
         Some(Direction { block, near: far, before: hull, ..from })
     }
 
     /// Lets the places of a block wait that may be the lowest.
-    fn look_at(&mut self, block: usize) {
-        let values = self.scan.values(block);
+    fn look_at(&mut self, block: usize, edges: [&Edge; 2]) {
+        let values = self.scan.values(block, edges);
         let least = values[1..=BLOCK].iter().fold(f64::INFINITY, |least, value| if *value < least { *value } else { least });
         if least >= self.seen + self.between {
             return;

@@ -56,11 +56,6 @@ impl Depths {
         self.first + self.step * number
     }
 
-    /// How many blocks there are.
-    pub(super) fn count(&self) -> usize {
-        self.blocks.len()
-    }
-
     /// The depths from one place on, and by how much each grows.
     #[inline]
     pub(super) fn from(&self, number: usize) -> &[[f64; 2]] {
@@ -85,11 +80,10 @@ impl Depths {
         if block < self.blocks.len() { self.blocks[block] } else { [f64::INFINITY; 2] }
     }
 
-    /// The block of a place.
+    /// The block of the number of a place.
     #[inline]
-    pub(super) fn block(&self, place: f64) -> usize {
-        let number = self.number(place);
-        low_bits((if number > 0.0 { number } else { 0.0 }) + (WHOLE - 0.5)) / BLOCK
+    pub(super) fn block(&self, number: f64) -> usize {
+        low_bits((if number > 0.5 { number } else { 0.5 }) + (WHOLE - 0.5)) / BLOCK
     }
 }
 

@@ -11,6 +11,9 @@ use crate::gear::contact::separation::Touch;
 /// The places of a block, with one more on either side.
 pub(super) const WITH_NEIGHBOURS: usize = BLOCK + 2;
 
+/// Those places, counted from where the block begins.
+const NUMBERS: [f64; WITH_NEIGHBOURS] = [-1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
+
 /// Both flanks at one path position.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scan<'a> {
@@ -36,8 +39,9 @@ pub(super) struct Scan<'a> {
 /// Where a block begins or ends.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
-    /// The block of what follows.
+    /// The block of what follows, and the number of the place.
     block: usize,
+    number: f64,
     /// The separation.
     apart: f64,
 }
@@ -79,7 +83,7 @@ impl<'a> Scan<'a> {
         let more = [0.0; 2];
         let mut scan = Self { leads, follows, leading, nominal, ratio, sum, squares, cubes, more, range, numbers };
         if let Some((leads, follows, separation)) = known {
-            let [near, apart] = scan.opposite(leads, scan.growth(leads));
+            let [near, apart] = scan.opposite(leads);
             scan.more = [follows - near, separation - apart];
         }
         Some(scan)
@@ -88,12 +92,12 @@ impl<'a> Scan<'a> {
     /// The first and the last block of places.
     pub(super) fn blocks(&self) -> [usize; 2] {
         let [first, last] = self.range;
-        [self.leads.block(first), self.leads.block(last).min(self.leads.count() - 2)]
+        [first, last].map(|end| self.leads.block(self.leads.number(end)))
     }
 
     /// The block of the nominal point.
     pub(super) fn nearest_block(&self) -> usize {
-        self.leads.block(self.nominal[0])
+        self.leads.block(self.leads.number(self.nominal[0]))
     }
 
     /// The roll length of what follows, if the flanks did not stand apart.
@@ -102,29 +106,25 @@ impl<'a> Scan<'a> {
         root(self.sum - self.ratio * leads * leads)
     }
 
-    /// By how much the roll length of what follows is larger since the flanks stand apart, over that distance.
-    #[inline]
-    fn growth(&self, leads: f64) -> f64 {
-        if leads < self.nominal[0] { 1.0 } else { self.ratio * leads / larger(self.following(leads), f64::MIN_POSITIVE) }
-    }
-
     /// The roll length of what follows, and the separation.
     #[inline]
-    fn opposite(&self, leads: f64, growth: f64) -> [f64; 2] {
+    fn opposite(&self, leads: f64) -> [f64; 2] {
         let follows = self.following(leads);
         let (one, other) = (leads - self.nominal[0], follows - self.nominal[1]);
         let apart = one * one * (self.squares[0] + self.cubes[0] * one)
             + other * other * (self.squares[1] + self.cubes[1] * other)
             + self.more[1];
+        // What grows of both roll lengths is longer by the separation.
+        let growth = if one > 0.0 { self.ratio * leads / larger(follows, f64::MIN_POSITIVE) } else { 1.0 };
         [follows + growth * apart + self.more[0], apart]
     }
 
     /// Where a block begins.
-    #[inline(never)]
+    #[inline]
     pub(super) fn edge(&self, block: usize) -> Edge {
-        let leads = self.leads.place((block * BLOCK) as f64);
-        let [follows, apart] = self.opposite(leads, self.growth(leads));
-        Edge { block: self.follows.block(follows), apart }
+        let [follows, apart] = self.opposite(self.leads.place((block * BLOCK) as f64));
+        let number = self.follows.number(follows);
+        Edge { block: self.follows.block(number), number, apart }
     }
 
     /// What the gap is not less than in a block, one edge of which is nearer to the nominal point, and what the lower hulls of both flanks
@@ -137,22 +137,23 @@ impl<'a> Scan<'a> {
         [near.apart + least + smaller(one, other), near.apart + hull + smaller(one_hull, other_hull)]
     }
 
-    /// The gap at all places of a block, with one more on either side; without bound where both flanks have none.
-    #[inline(never)]
-    pub(super) fn values(&self, block: usize) -> [f64; WITH_NEIGHBOURS] {
+    /// The gap at all places of a block between these edges, with one more on either side; without bound where both flanks have none.
+    pub(super) fn values(&self, block: usize, [from, to]: [&Edge; 2]) -> [f64; WITH_NEIGHBOURS] {
         let first = block * BLOCK - 1;
-        let from = self.leads.place(first as f64);
-        let step = self.leads.place(first as f64 + 1.0) - from;
-        let growth = self.growth(from);
-        let (mut values, mut numbers) = ([0.0; WITH_NEIGHBOURS], [0.0; WITH_NEIGHBOURS]);
-        for at in 0..WITH_NEIGHBOURS {
-            let [follows, apart] = self.opposite(from + step * at as f64, growth);
-            values[at] = apart;
-            numbers[at] = self.follows.number(follows);
+        let [middle, apart] = self.opposite(self.leads.place((block * BLOCK + BLOCK / 2) as f64));
+        let middle = self.follows.number(middle);
+        // Parabolas: what is of third order over so short a way is less than rounding of the depths.
+        let apart = parabola([from.apart, apart, to.apart]);
+        let numbers = parabola([from.number, middle, to.number]);
+        let (mut values, mut places) = ([0.0; WITH_NEIGHBOURS], [0.0; WITH_NEIGHBOURS]);
+        for (at, (value, place)) in values.iter_mut().zip(&mut places).enumerate() {
+            let along = NUMBERS[at];
+            *value = apart[0] + along * (apart[1] + along * apart[2]);
+            *place = numbers[0] + along * (numbers[1] + along * numbers[2]);
         }
         let depths = &self.leads.from(first)[..WITH_NEIGHBOURS];
-        for at in 0..WITH_NEIGHBOURS {
-            values[at] += depths[at][0] + self.follows.between(numbers[at]);
+        for ((value, place), depth) in values.iter_mut().zip(places).zip(depths) {
+            *value += depth[0] + self.follows.between(place);
         }
         let [low, high] = [self.numbers[0] - first as f64, self.numbers[1] - first as f64];
         if low > 0.0 || high < (WITH_NEIGHBOURS - 1) as f64 {
@@ -168,7 +169,7 @@ impl<'a> Scan<'a> {
     /// Which way off the line of action a place is, of the gear's points before the pinion's flank or the reverse, and how far.
     pub(super) fn place(&self, leads: f64) -> (usize, f64) {
         let leads = leads.clamp(self.range[0], self.range[1]);
-        let ahead = [leads - self.nominal[0], self.opposite(leads, self.growth(leads))[0] - self.nominal[1]];
+        let ahead = [leads - self.nominal[0], self.opposite(leads)[0] - self.nominal[1]];
         let [pinion, gear] = [ahead[self.leading], ahead[1 - self.leading]];
         if pinion >= 0.0 { (0, larger(-gear, 0.0)) } else { (1, -pinion) }
     }
@@ -177,6 +178,14 @@ impl<'a> Scan<'a> {
     pub(super) fn at(&self, number: f64) -> f64 {
         self.leads.place(number)
     }
+}
+
+/// The coefficients of the parabola through values at both ends and in the middle of a block, against the number of the place in it.
+#[inline]
+fn parabola([from, middle, to]: [f64; 3]) -> [f64; 3] {
+    const HALF: f64 = 0.5 * BLOCK as f64;
+    let bend = (from - 2.0 * middle + to) / (2.0 * HALF * HALF);
+    [from, (to - from) / (2.0 * HALF) - 2.0 * HALF * bend, bend]
 }
 
 /// As these are one instruction.
