@@ -14,6 +14,8 @@ pub struct Spline {
     index: Index,
     /// The least and the largest second derivative.
     bends_between: [f64; 2],
+    /// The first and the last knot.
+    between: [f64; 2],
 }
 
 impl Spline {
@@ -34,7 +36,7 @@ impl Spline {
             [knots[at], values[at], slopes[at], (secant - slopes[at]) / step - bend, bend / step]
         };
         let pieces = (0..steps.len()).map(cubic).collect();
-        let mut spline = Self { knots: knots.to_vec(), pieces, index: Index::new(knots), bends_between: [0.0; 2] };
+        let mut spline = Self { knots: knots.to_vec(), pieces, index: Index::new(knots), bends_between: [0.0; 2], between: [knots[0], knots[knots.len() - 1]] };
         let none = [f64::INFINITY, f64::NEG_INFINITY];
         spline.bends_between = spline.bends().fold(none, |[least, most], bend| [least.min(bend), most.max(bend)]);
         spline
@@ -61,7 +63,7 @@ impl Spline {
     /// The first and the last knot.
     #[must_use]
     pub fn ends(&self) -> [f64; 2] {
-        [self.knots[0], self.knots[self.knots.len() - 1]]
+        self.between
     }
 
     /// Its knots, ascending.
@@ -77,6 +79,17 @@ impl Spline {
         let [from, c0, c1, c2, c3] = *self.piece(x);
         let t = x - from;
         [c0 + t * (c1 + t * (c2 + t * c3)), c1 + t * (2.0 * c2 + 3.0 * t * c3), 2.0 * c2 + 6.0 * t * c3]
+    }
+
+    /// The same, but beyond its ends what it is there, without slope.
+    #[must_use]
+    #[inline]
+    pub fn held_rates(&self, x: f64) -> [f64; 3] {
+        let [first, last] = self.between;
+        if x < first || x > last {
+            return [self.value(if x < first { first } else { last }), 0.0, 0.0];
+        }
+        self.rates(x)
     }
 
     /// The value at `x`.

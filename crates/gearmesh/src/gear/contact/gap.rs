@@ -76,6 +76,16 @@ struct Way<'a> {
     turn: Turn,
 }
 
+/// The gap of two profiles, its slope and its bend along the points, of what each has lost there against its own position.
+#[inline]
+fn pulled(touch: &Touch, point: [f64; 3], flank: [f64; 3]) -> [f64; 3] {
+    [
+        touch.separation + point[0] + flank[0],
+        touch.slope + point[1] + flank[1] * touch.rate,
+        touch.bend + point[2] + flank[2] * touch.rate * touch.rate + flank[1] * touch.rate_slope,
+    ]
+}
+
 /// The state of a search: the current point, its smooth piece, and the least gap so far.
 struct Search<'a, 'b> {
     way: &'b Way<'a>,
@@ -197,6 +207,13 @@ impl<'a> Gaps<'a> {
         self.ways[0].point.is_sampled || self.ways[0].flank.is_sampled
     }
 
+    /// Whether profiles bend back more than the separation of the flanks bends, so that the gap has a kink wherever contact goes over from one
+    /// crest to another.
+    #[must_use]
+    pub fn is_rough(&self) -> bool {
+        self.rough.is_some()
+    }
+
     /// Path positions in `window` at which the gap is not smooth: ends of contact and of reliefs, and where the flanks
     /// begin to touch at another place.
     #[must_use]
@@ -288,11 +305,7 @@ impl Way<'_> {
     fn pull(&self, nominal: f64, before: f64, touch: &Touch, pieces: [usize; 2]) -> [f64; 3] {
         let point = self.point.rates(nominal + before, pieces[0]);
         let flank = self.flank.rates(touch.curvature, pieces[1]);
-        [
-            touch.separation + point[0] + flank[0],
-            touch.slope + point[1] + flank[1] * touch.rate,
-            touch.bend + point[2] + flank[2] * touch.rate * touch.rate + flank[1] * touch.rate_slope,
-        ]
+        pulled(touch, point, flank)
     }
 
     /// The end of the smooth pieces: where the profile of the point or that of the flank has its next cut.

@@ -5,7 +5,7 @@
 //! places near enough are looked at, in steps between which the gap falls by no more than is known from how the profiles bend,
 //! and those that could be the lowest are followed on the profiles themselves. Must not know: load, what the profiles are.
 
-use super::Way;
+use super::{Way, pulled};
 use crate::gear::geometry::GearPair;
 use depths::{BLOCK, Depths};
 use scan::{Edge, Scan, WITH_NEIGHBOURS};
@@ -14,9 +14,9 @@ mod depths;
 mod scan;
 
 /// By how much the gap may be lower between two places of the scan than at both \[m\]: it says how near they are.
-const BETWEEN: f64 = 100e-9;
-/// The fewest and the most steps of a scan along the path.
-const FEWEST: f64 = 256.0;
+const BETWEEN: f64 = 150e-9;
+/// The fewest and the most steps of a scan along the path; where splines have more knots than the fewest, as many as those.
+const FEWEST: f64 = 512.0;
 const MOST: f64 = 65_536.0;
 /// What may be left of the gap to fall \[m\], of which a parabola tells all but a hundredth.
 const NEGLIGIBLE: f64 = 1e-9;
@@ -24,6 +24,8 @@ const NEGLIGIBLE: f64 = 1e-9;
 const MOST_STEPS: usize = 48;
 /// How near two places between which the gap is lowest are one, over the steps of a scan.
 const CLOSEST: f64 = 1e-6;
+/// By how much it may be lower in a block than at both its edges, over that: the square of its steps, of which half is for lines.
+const DIP: f64 = 0.5 * (BLOCK * BLOCK) as f64 + 1.0;
 /// Places that wait to be followed.
 const WAITING: usize = 16;
 
@@ -78,7 +80,8 @@ impl Rough {
         let of_separation = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| bend(from + share * (to - from)));
         let bends = of_separation.into_iter().fold(0.0, f64::max) + flanks[0].most_bend() + flanks[1].most_bend();
         let kinks = flanks[0].most_kink() + flanks[1].most_kink();
-        let step = (4.0 * BETWEEN / bends).sqrt().clamp((to - from) / MOST, (to - from) / FEWEST);
+        let fewest = flanks.iter().map(|flank| flank.knots() as f64).fold(FEWEST, f64::max).min(MOST);
+        let step = (4.0 * BETWEEN / bends).sqrt().clamp((to - from) / MOST, (to - from) / fewest);
         // What a function falls by between two places, and what lines between the other flank's places are off.
         let between = step * (0.25 * step * bends + 0.5 * kinks);
         let depths = flanks.map(|flank| Depths::new(flank, step));
@@ -127,7 +130,9 @@ impl Search<'_, '_> {
         }
         let block = if is_up { block + 1 } else { block - 1 };
         let far = self.scan.edge(if is_up { block + 1 } else { block });
-        let [least, hull] = self.scan.at_least(block, &near, &far);
+        // At an end of a flank there is no bend that would be known.
+        let dip = if block == first || block == last { f64::INFINITY } else { DIP * self.between };
+        let [least, hull] = self.scan.at_least(block, &near, &far, dip);
         let reach = self.seen + self.between;
         if hull >= reach && hull >= before {
             return None;
@@ -181,7 +186,7 @@ impl Search<'_, '_> {
         let nominal = on.facing.turned(on.side, self.s);
         let before = before.max(on.facing.start - nominal);
         let touch = if before > 0.0 { on.facing.touch(nominal + before, before) } else { on.facing.on_line(nominal) };
-        on.pull(nominal, before, &touch, on.pieces(nominal + before, &touch))
+        pulled(&touch, on.point.held_rates(nominal + before), on.flank.held_rates(touch.curvature))
     }
 
     fn offer_end(&mut self, end: f64) {

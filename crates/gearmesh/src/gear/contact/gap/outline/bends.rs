@@ -73,10 +73,24 @@ impl Outline<'_> {
         most
     }
 
+    /// Depth, slope and bend of what is a spline alone, beyond whose ends it is held; of anything else those of its piece.
+    #[inline]
+    pub(in super::super) fn held_rates(&self, position: f64) -> [f64; 3] {
+        let Some(spline) = self.spline else { return self.rates(position, self.piece(position)) };
+        let [at_zero, rate] = self.rolls;
+        let [depth, slope, bend] = spline.held_rates(at_zero + rate * position);
+        [depth, slope * rate, bend * rate * rate]
+    }
+
     /// By how much the slope grows at a cut, at the most, not below 0.
     pub(in super::super) fn most_kink(&self) -> f64 {
         let kink = |cut: usize| self.rates(self.cuts[cut], cut)[1] - self.rates(self.cuts[cut], cut - 1)[1];
         (1..self.pieces()).map(kink).fold(0.0, f64::max)
+    }
+
+    /// How many knots its splines have.
+    pub(in super::super) fn knots(&self) -> usize {
+        self.parts.iter().map(|part| part.knots().len()).max().unwrap_or(0)
     }
 
     /// Between which positions it lies.

@@ -42,8 +42,9 @@ pub(super) struct Edge {
     /// The block of what follows, and the number of the place.
     block: usize,
     number: f64,
-    /// The separation.
+    /// The separation, and the gap.
     apart: f64,
+    gap: f64,
 }
 
 impl<'a> Scan<'a> {
@@ -124,17 +125,19 @@ impl<'a> Scan<'a> {
     pub(super) fn edge(&self, block: usize) -> Edge {
         let [follows, apart] = self.opposite(self.leads.place((block * BLOCK) as f64));
         let number = self.follows.number(follows);
-        Edge { block: self.follows.block(number), number, apart }
+        let gap = apart + self.leads.from(block * BLOCK)[0][0] + self.follows.between(number);
+        Edge { block: self.follows.block(number), number, apart, gap }
     }
 
     /// What the gap is not less than in a block, one edge of which is nearer to the nominal point, and what the lower hulls of both flanks
-    /// make of it.
+    /// make of it. It falls from one edge to the other by no more than `dip` below both.
     #[inline]
-    pub(super) fn at_least(&self, block: usize, near: &Edge, far: &Edge) -> [f64; 2] {
+    pub(super) fn at_least(&self, block: usize, near: &Edge, far: &Edge, dip: f64) -> [f64; 2] {
         let ([one, one_hull], [other, other_hull]) =
             (self.follows.least_of(near.block), self.follows.least_of(far.block));
         let [least, hull] = self.leads.least_of(block);
-        [near.apart + least + smaller(one, other), near.apart + hull + smaller(one_hull, other_hull)]
+        let least = larger(near.apart + least + smaller(one, other), smaller(near.gap, far.gap) - dip);
+        [least, near.apart + hull + smaller(one_hull, other_hull)]
     }
 
     /// The gap at all places of a block between these edges, with one more on either side; without bound where both flanks have none.
