@@ -36,7 +36,13 @@ impl Spline {
             [knots[at], values[at], slopes[at], (secant - slopes[at]) / step - bend, bend / step]
         };
         let pieces = (0..steps.len()).map(cubic).collect();
-        let mut spline = Self { knots: knots.to_vec(), pieces, index: Index::new(knots), bends_between: [0.0; 2], between: [knots[0], knots[knots.len() - 1]] };
+        let mut spline = Self {
+            knots: knots.to_vec(),
+            pieces,
+            index: Index::new(knots),
+            bends_between: [0.0; 2],
+            between: [knots[0], knots[knots.len() - 1]],
+        };
         let none = [f64::INFINITY, f64::NEG_INFINITY];
         spline.bends_between = spline.bends().fold(none, |[least, most], bend| [least.min(bend), most.max(bend)]);
         spline
@@ -117,6 +123,15 @@ impl Spline {
             values.push(c0 + t * (c1 + t * (c2 + t * c3)));
         }
         values
+    }
+
+    /// The largest second derivative over the largest third one, without their signs: of waves of one length that over 2π. Without bound
+    /// for a parabola.
+    #[must_use]
+    pub fn shortest(&self) -> f64 {
+        let most = self.pieces.iter().fold(0.0_f64, |most, piece| most.max(piece[4].abs()));
+        let [low, high] = self.bends_between;
+        if most > 0.0 { low.abs().max(high.abs()) / (6.0 * most) } else { f64::INFINITY }
     }
 
     /// The slope at every knot.

@@ -8,8 +8,8 @@
 use super::separation::{Facing, Touch};
 use crate::gear::geometry::{GearPair, Side};
 use crate::gear::modification::section::Profiles;
-use beyond::Turn;
 use bends::are_rough;
+use beyond::Turn;
 use outline::Outline;
 use rough::Rough;
 

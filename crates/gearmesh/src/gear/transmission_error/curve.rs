@@ -154,7 +154,8 @@ impl LoadCase<'_> {
             }
         });
         let value = |position: f64, pairs: usize| self.state(position, pairs).transmission_error();
-        let (largest, smallest) = (error.largest(rows, self.refining(), value), error.smallest(rows, self.refining(), value));
+        let (largest, smallest) =
+            (error.largest(rows, self.refining(), value), error.smallest(rows, self.refining(), value));
         let nodes = error.nodes(rows);
         let (mean, variance) = harmonics::mean_and_variance(cycle.period(), &nodes);
         let nominal = self.without_load();

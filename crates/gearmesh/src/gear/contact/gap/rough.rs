@@ -15,8 +15,8 @@ mod scan;
 
 /// By how much the gap may be lower between two places of the scan than at both \[m\]: it says how near they are.
 const BETWEEN: f64 = 150e-9;
-/// The fewest and the most steps of a scan along the path; where splines have more knots than the fewest, as many as those.
-const FEWEST: f64 = 512.0;
+/// The fewest and the most steps of a scan along the path.
+const FEWEST: f64 = 256.0;
 const MOST: f64 = 65_536.0;
 /// What may be left of the gap to fall \[m\], of which a parabola tells all but a hundredth.
 const NEGLIGIBLE: f64 = 1e-9;
@@ -80,8 +80,9 @@ impl Rough {
         let of_separation = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| bend(from + share * (to - from)));
         let bends = of_separation.into_iter().fold(0.0, f64::max) + flanks[0].most_bend() + flanks[1].most_bend();
         let kinks = flanks[0].most_kink() + flanks[1].most_kink();
-        let fewest = flanks.iter().map(|flank| flank.knots() as f64).fold(FEWEST, f64::max).min(MOST);
-        let step = (4.0 * BETWEEN / bends).sqrt().clamp((to - from) / MOST, (to - from) / fewest);
+        // Short waves show at six places each, however low they are.
+        let shortest = flanks[0].shortest().min(flanks[1].shortest());
+        let step = (4.0 * BETWEEN / bends).sqrt().min(shortest).clamp((to - from) / MOST, (to - from) / FEWEST);
         // What a function falls by between two places, and what lines between the other flank's places are off.
         let between = step * (0.25 * step * bends + 0.5 * kinks);
         let depths = flanks.map(|flank| Depths::new(flank, step));
@@ -146,7 +147,8 @@ impl Search<'_, '_> {
     /// Lets the places of a block wait that may be the lowest.
     fn look_at(&mut self, block: usize, edges: [&Edge; 2]) {
         let values = self.scan.values(block, edges);
-        let least = values[1..=BLOCK].iter().fold(f64::INFINITY, |least, value| if *value < least { *value } else { least });
+        let least =
+            values[1..=BLOCK].iter().fold(f64::INFINITY, |least, value| if *value < least { *value } else { least });
         if least >= self.seen + self.between {
             return;
         }
@@ -167,7 +169,9 @@ impl Search<'_, '_> {
     }
 
     fn follow_those_that_wait(&mut self) {
-        while let Some(next) = (0..self.count).min_by(|one, other| self.waiting[*one][0].total_cmp(&self.waiting[*other][0])) {
+        while let Some(next) =
+            (0..self.count).min_by(|one, other| self.waiting[*one][0].total_cmp(&self.waiting[*other][0]))
+        {
             let [value, number] = self.waiting[next];
             if value >= self.least + self.between {
                 break;

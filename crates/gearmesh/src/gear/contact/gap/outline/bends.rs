@@ -88,9 +88,14 @@ impl Outline<'_> {
         (1..self.pieces()).map(kink).fold(0.0, f64::max)
     }
 
-    /// How many knots its splines have.
-    pub(in super::super) fn knots(&self) -> usize {
-        self.parts.iter().map(|part| part.knots().len()).max().unwrap_or(0)
+    /// How short its waves are: over 2π of what is one spline, and the distance of knots of several.
+    pub(in super::super) fn shortest(&self) -> f64 {
+        let [_, rate] = self.rolls;
+        if let Some(spline) = self.spline {
+            return spline.shortest() / rate.abs();
+        }
+        let knots = self.parts.iter().map(|part| part.knots().len()).max().unwrap_or(0);
+        (self.facing.end - self.facing.start) / knots.max(1) as f64
     }
 
     /// Between which positions it lies.
