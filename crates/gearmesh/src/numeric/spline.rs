@@ -12,8 +12,10 @@ pub struct Spline {
     /// The lower end of each interval, and the cubic of the distance from there: beside each other, since a search reads both.
     pieces: Vec<[f64; 5]>,
     index: Index,
-    /// The least second derivative.
-    least_bend: f64,
+    /// The least and the largest second derivative.
+    bends_between: [f64; 2],
+    /// The first and the last knot.
+    between: [f64; 2],
 }
 
 impl Spline {
@@ -34,8 +36,15 @@ impl Spline {
             [knots[at], values[at], slopes[at], (secant - slopes[at]) / step - bend, bend / step]
         };
         let pieces = (0..steps.len()).map(cubic).collect();
-        let mut spline = Self { knots: knots.to_vec(), pieces, index: Index::new(knots), least_bend: 0.0 };
-        spline.least_bend = spline.bends().fold(f64::INFINITY, f64::min);
+        let mut spline = Self {
+            knots: knots.to_vec(),
+            pieces,
+            index: Index::new(knots),
+            bends_between: [0.0; 2],
+            between: [knots[0], knots[knots.len() - 1]],
+        };
+        let none = [f64::INFINITY, f64::NEG_INFINITY];
+        spline.bends_between = spline.bends().fold(none, |[least, most], bend| [least.min(bend), most.max(bend)]);
         spline
     }
 
@@ -48,13 +57,19 @@ impl Spline {
     /// The least second derivative.
     #[must_use]
     pub fn least_bend(&self) -> f64 {
-        self.least_bend
+        self.bends_between[0]
+    }
+
+    /// The largest second derivative.
+    #[must_use]
+    pub fn most_bend(&self) -> f64 {
+        self.bends_between[1]
     }
 
     /// The first and the last knot.
     #[must_use]
     pub fn ends(&self) -> [f64; 2] {
-        [self.knots[0], self.knots[self.knots.len() - 1]]
+        self.between
     }
 
     /// Its knots, ascending.
@@ -72,12 +87,51 @@ impl Spline {
         [c0 + t * (c1 + t * (c2 + t * c3)), c1 + t * (2.0 * c2 + 3.0 * t * c3), 2.0 * c2 + 6.0 * t * c3]
     }
 
+    /// The same, but beyond its ends what it is there, without slope.
+    #[must_use]
+    #[inline]
+    pub fn held_rates(&self, x: f64) -> [f64; 3] {
+        let [first, last] = self.between;
+        if x < first || x > last {
+            return [self.value(if x < first { first } else { last }), 0.0, 0.0];
+        }
+        self.rates(x)
+    }
+
     /// The value at `x`.
     #[must_use]
     pub fn value(&self, x: f64) -> f64 {
         let [from, c0, c1, c2, c3] = *self.piece(x);
         let t = x - from;
         c0 + t * (c1 + t * (c2 + t * c3))
+    }
+
+    /// The values at so many places from `first` on, in equal steps upwards; outside of its ends those at the ends.
+    #[must_use]
+    pub fn equidistant(&self, [first, step]: [f64; 2], count: usize) -> Vec<f64> {
+        let ends = self.ends();
+        let mut values = Vec::with_capacity(count);
+        let mut pieces = self.pieces.iter().peekable();
+        let mut piece = self.pieces[0];
+        for at in 0..count {
+            let x = (first + step * at as f64).clamp(ends[0], ends[1]);
+            while let Some(next) = pieces.next_if(|next| next[0] <= x) {
+                piece = *next;
+            }
+            let [begin, c0, c1, c2, c3] = piece;
+            let t = x - begin;
+            values.push(c0 + t * (c1 + t * (c2 + t * c3)));
+        }
+        values
+    }
+
+    /// The largest second derivative over the largest third one, without their signs: of waves of one length that over 2π. Without bound
+    /// for a parabola.
+    #[must_use]
+    pub fn shortest(&self) -> f64 {
+        let most = self.pieces.iter().fold(0.0_f64, |most, piece| most.max(piece[4].abs()));
+        let [low, high] = self.bends_between;
+        if most > 0.0 { low.abs().max(high.abs()) / (6.0 * most) } else { f64::INFINITY }
     }
 
     /// The slope at every knot.
@@ -121,7 +175,7 @@ impl Index {
     fn interval(&self, count: usize, x: f64, begins: impl Fn(usize) -> f64) -> usize {
         let last = count - 1;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // what is too large is the last one
-        let cell = (((x - self.from) * self.per_length).max(0.0) as usize).min(last);
+        let cell = (((x - self.from) * self.per_length) as u32 as usize).min(last);
         let mut interval = self.first[cell] as usize;
         while interval < last && begins(interval + 1) <= x {
             interval += 1;

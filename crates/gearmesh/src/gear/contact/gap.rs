@@ -8,15 +8,17 @@
 use super::separation::{Facing, Touch};
 use crate::gear::geometry::{GearPair, Side};
 use crate::gear::modification::section::Profiles;
+use bends::are_rough;
 use beyond::Turn;
-use bridge::bridge;
 use outline::Outline;
+use rough::Rough;
 
+mod bends;
 mod beyond;
-mod bridge;
 mod convex;
 mod copy;
 mod outline;
+mod rough;
 
 /// Where the search for a minimum stops, in pieces; the error of the gap is of second order in it.
 const PLACE: f64 = 1e-6;
@@ -61,6 +63,8 @@ pub struct Gaps<'a> {
     modified: bool,
     /// Whether no profile bends back.
     is_convex: bool,
+    /// What flanks are searched by that bend back more than the separation bends.
+    rough: Option<Rough>,
 }
 
 #[derive(Clone, Debug)]
@@ -70,6 +74,16 @@ struct Way<'a> {
     point: Outline<'a>,
     flank: Outline<'a>,
     turn: Turn,
+}
+
+/// The gap of two profiles, its slope and its bend along the points, of what each has lost there against its own position.
+#[inline]
+fn pulled(touch: &Touch, point: [f64; 3], flank: [f64; 3]) -> [f64; 3] {
+    [
+        touch.separation + point[0] + flank[0],
+        touch.slope + point[1] + flank[1] * touch.rate,
+        touch.bend + point[2] + flank[2] * touch.rate * touch.rate + flank[1] * touch.rate_slope,
+    ]
 }
 
 /// The state of a search: the current point, its smooth piece, and the least gap so far.
@@ -85,14 +99,14 @@ impl<'a> Gaps<'a> {
     #[must_use]
     pub fn new(pair: &GearPair, profiles: &Profiles<'a>) -> Self {
         let gaps = Self::of(pair, profiles);
-        if gaps.is_convex { gaps } else { gaps.thorough() }
+        if gaps.is_convex || gaps.rough.is_some() { gaps } else { gaps.thorough() }
     }
 
     fn of(pair: &GearPair, [pinion, gear]: &Profiles<'a>) -> Self {
         let facings = [Side::Gear, Side::Pinion].map(|side| Facing::new(pair, side));
-        let (mut point, mut flank) = (Outline::new(gear, facings[0], true), Outline::new(pinion, facings[0], false));
-        bridge(&facings[0], &mut point, &mut flank);
-        let is_convex = point.is_convex() && flank.is_convex();
+        let (point, flank) = (Outline::new(gear, facings[0], true), Outline::new(pinion, facings[0], false));
+        let is_rough = are_rough(&facings[0], &point, &flank);
+        let is_convex = !is_rough && point.is_convex() && flank.is_convex();
         let (flank_too, point_too) = (point.mirrored(facings[1]), flank.mirrored(facings[1]));
         let turn = Turn::default();
         let mut ways = [
@@ -103,7 +117,8 @@ impl<'a> Gaps<'a> {
         for way in ways.iter_mut().filter(|way| modified && way.facing.round > 0.0) {
             way.turn = way.turned();
         }
-        Self { ways, modified, is_convex }
+        let rough = is_rough.then(|| Rough::new(pair, &ways));
+        Self { ways, modified, is_convex, rough }
     }
 
     /// For a search that needs no convexity.
@@ -156,6 +171,9 @@ impl<'a> Gaps<'a> {
                 if !self.modified {
                     return (gap, spot);
                 }
+                if let Some(rough) = &self.rough {
+                    return (rough.least(&self.ways, s, gap), spot);
+                }
                 return if self.is_convex {
                     way.descend(nominal, before, way.facing.flank_end(before)).unwrap_or((gap, spot))
                 } else {
@@ -168,6 +186,9 @@ impl<'a> Gaps<'a> {
         }
         if self.is_convex {
             return self.convex(s);
+        }
+        if let Some(rough) = &self.rough {
+            return (rough.least(&self.ways, s, f64::INFINITY), Spot::OnLineOfAction);
         }
         let mut minimum = (self.on_line(s), Spot::OnLineOfAction);
         for way in &self.ways {
@@ -186,6 +207,13 @@ impl<'a> Gaps<'a> {
         self.ways[0].point.is_sampled || self.ways[0].flank.is_sampled
     }
 
+    /// Whether profiles bend back more than the separation of the flanks bends, so that the gap has a kink wherever contact goes over from one
+    /// crest to another.
+    #[must_use]
+    pub fn is_rough(&self) -> bool {
+        self.rough.is_some()
+    }
+
     /// Path positions in `window` at which the gap is not smooth: ends of contact and of reliefs, and where the flanks
     /// begin to touch at another place.
     #[must_use]
@@ -196,7 +224,8 @@ impl<'a> Gaps<'a> {
         known.extend(inner.filter(|s| *s > window.0 && *s < window.1));
         known.sort_by(f64::total_cmp);
         known.dedup();
-        if !self.modified {
+        // Where the contact goes over from one crest to another is told by nothing: there are as many such places as crests.
+        if !self.modified || self.rough.is_some() {
             return known;
         }
         let (start, end) = (facing.start, facing.end);
@@ -276,11 +305,7 @@ impl Way<'_> {
     fn pull(&self, nominal: f64, before: f64, touch: &Touch, pieces: [usize; 2]) -> [f64; 3] {
         let point = self.point.rates(nominal + before, pieces[0]);
         let flank = self.flank.rates(touch.curvature, pieces[1]);
-        [
-            touch.separation + point[0] + flank[0],
-            touch.slope + point[1] + flank[1] * touch.rate,
-            touch.bend + point[2] + flank[2] * touch.rate * touch.rate + flank[1] * touch.rate_slope,
-        ]
+        pulled(touch, point, flank)
     }
 
     /// The end of the smooth pieces: where the profile of the point or that of the flank has its next cut.

@@ -76,7 +76,8 @@ impl LoadCase<'_> {
             }
         });
         let value = |position: f64, pairs: usize| self.state(position, pairs).transmission_error();
-        let (largest, smallest) = (error.largest(rows, value), error.smallest(rows, value));
+        let (largest, smallest) =
+            (error.largest(rows, self.refining(), value), error.smallest(rows, self.refining(), value));
         let nodes = error.nodes(rows);
         let (mean, variance) = if asked.integrals { harmonics::mean_and_variance(period, &nodes) } else { (0.0, 0.0) };
         Found {

@@ -154,7 +154,8 @@ impl LoadCase<'_> {
             }
         });
         let value = |position: f64, pairs: usize| self.state(position, pairs).transmission_error();
-        let (largest, smallest) = (error.largest(rows, value), error.smallest(rows, value));
+        let (largest, smallest) =
+            (error.largest(rows, self.refining(), value), error.smallest(rows, self.refining(), value));
         let nodes = error.nodes(rows);
         let (mean, variance) = harmonics::mean_and_variance(cycle.period(), &nodes);
         let nominal = self.without_load();
@@ -187,7 +188,7 @@ impl LoadCase<'_> {
     pub(super) fn extremes(&self) -> [Extremum; 2] {
         let (trace, rows) = (self.trace(), &self.cycle.rows);
         let value = |position: f64, pairs: usize| self.state(position, pairs).transmission_error();
-        [trace.largest(rows, value), trace.smallest(rows, value)]
+        [trace.largest(rows, self.refining(), value), trace.smallest(rows, self.refining(), value)]
     }
 
     pub(super) fn between(&self, [largest, smallest]: [Extremum; 2]) -> f64 {

@@ -96,6 +96,11 @@ impl<'a> Flanks<'a> {
         self.sections.iter().chain([&self.middle]).filter_map(|section| section.gaps.as_ref()).any(Gaps::is_sampled)
     }
 
+    /// Whether a profile bends back more than the separation of the flanks bends.
+    pub(super) fn is_rough(&self) -> bool {
+        self.sections.iter().chain([&self.middle]).filter_map(|section| section.gaps.as_ref()).any(Gaps::is_rough)
+    }
+
     /// Whether nothing is taken off along the profiles.
     pub(super) fn is_unmodified(&self) -> bool {
         self.in_the_middle().is_none_or(|gaps| !gaps.is_modified())

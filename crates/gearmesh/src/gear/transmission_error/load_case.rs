@@ -10,6 +10,7 @@ use super::cycle::{Elasticity, MeshCycle};
 use super::flanks::Flanks;
 use super::friction::Resisted;
 use super::sliced::Sliced;
+use super::trace::Refining;
 use super::within_reach::WithinReach;
 use crate::gear::contact::CornerContact;
 use crate::gear::contact::flattening::InSeries;
@@ -240,6 +241,11 @@ impl<'a> LoadCase<'a> {
     #[inline]
     pub(super) fn touches_on_line(&self) -> bool {
         matches!(self.touching, Touching::LineOfAction)
+    }
+
+    /// Which extrema of a curve are refined: of rough flanks it is seen as fine as positions are.
+    pub(super) fn refining(&self) -> Refining {
+        if self.flanks.is_rough() { Refining::Few } else { Refining::Each }
     }
 
     /// Where slices hold each other.

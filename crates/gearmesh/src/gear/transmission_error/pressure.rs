@@ -171,7 +171,7 @@ impl LoadCase<'_> {
     /// The largest over the cycle, from the values along it.
     pub(super) fn largest_pressure(&self, trace: &Trace) -> LargestPressure {
         let value = |position: f64, pairs: usize| self.pressed(position, pairs, &self.state(position, pairs)).largest;
-        let extremum = trace.largest(&self.cycle.rows, value);
+        let extremum = trace.largest(&self.cycle.rows, self.refining(), value);
         let state = self.state(extremum.position, extremum.pairs);
         let contacts = self.contacts(extremum.position, extremum.pairs, &state);
         let larger =

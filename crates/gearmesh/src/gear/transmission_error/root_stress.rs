@@ -151,7 +151,7 @@ impl LoadCase<'_> {
                 self.root_stress(position, pairs, &self.state(position, pairs)).map(|of_gears| of_gears[gear])
             };
             let stress = |position: f64, pairs: usize| at(position, pairs).map_or(0.0, |root| root.stress);
-            let extremum = traces[gear].largest(&self.cycle.rows, stress);
+            let extremum = traces[gear].largest(&self.cycle.rows, self.refining(), stress);
             let radius = at(extremum.position, extremum.pairs)?.radius;
             Some(LargestRootStress { extremum, radius })
         };

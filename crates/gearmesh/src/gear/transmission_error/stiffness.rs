@@ -6,7 +6,7 @@
 use super::curve::{Point, Wanted};
 use super::cycle::MeshCycle;
 use super::load_case::LoadCase;
-use super::trace::{NODES, Trace};
+use super::trace::{NODES, Refining, Trace};
 use crate::gear::modification::Design;
 
 /// Extremes of the stiffness where the same number of pairs is in contact.
@@ -46,7 +46,10 @@ pub fn stiffness(cycle: &MeshCycle, torque: f64) -> (Vec<Point>, StiffnessSummar
     });
     let of = |pairs: usize| {
         let zone = Trace { spans: trace.spans.iter().filter(|(span, _)| span.pairs == pairs).copied().collect() };
-        let (minimum, maximum) = (zone.smallest(&cycle.rows, secant).value, zone.largest(&cycle.rows, secant).value);
+        let (minimum, maximum) = (
+            zone.smallest(&cycle.rows, Refining::Each, secant).value,
+            zone.largest(&cycle.rows, Refining::Each, secant).value,
+        );
         ZoneStiffness { pairs, minimum, maximum }
     };
     let fewest = cycle.zones.iter().map(|zone| zone.pairs).min().unwrap_or(1);

@@ -18,6 +18,10 @@ const OVERSHOOT: f64 = 4.0;
 const PROBE: f64 = 1e-6;
 /// Accuracy of the place of an extremum, in distances of nodes; the error of its value is of second order in it.
 const PLACE: f64 = 1e-5;
+/// The same where there may be as many extrema as nodes, and how many of them are refined: those that nodes say are the highest. The
+/// nodes themselves miss more of the others.
+const ROUGH_PLACE: f64 = 1e-3;
+const ROUGH_MOST: usize = 2;
 
 /// Nodes and weights on the unit interval.
 #[derive(Clone, Debug)]
@@ -105,6 +109,15 @@ impl Span {
     }
 }
 
+/// Which extrema are refined on the function itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refining {
+    /// All that may be the largest or the smallest.
+    Each,
+    /// Of a function that is rough between its nodes: the few that nodes say are.
+    Few,
+}
+
 /// A function over the whole cycle, by position.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
@@ -134,16 +147,23 @@ struct Neighbourhood {
 
 impl Trace {
     /// The largest value; `function` gives the value at any position with a number of pairs.
-    pub fn largest(&self, rows: &SpanRule, function: impl Fn(f64, usize) -> f64) -> Extremum {
-        self.extreme(rows, 1.0, function)
+    pub fn largest(&self, rows: &SpanRule, refining: Refining, function: impl Fn(f64, usize) -> f64) -> Extremum {
+        self.extreme(rows, 1.0, refining, function)
     }
 
     /// The smallest value.
-    pub fn smallest(&self, rows: &SpanRule, function: impl Fn(f64, usize) -> f64) -> Extremum {
-        self.extreme(rows, -1.0, function)
+    pub fn smallest(&self, rows: &SpanRule, refining: Refining, function: impl Fn(f64, usize) -> f64) -> Extremum {
+        self.extreme(rows, -1.0, refining, function)
     }
 
-    fn extreme(&self, rows: &SpanRule, sign: f64, function: impl Fn(f64, usize) -> f64) -> Extremum {
+    fn extreme(
+        &self,
+        rows: &SpanRule,
+        sign: f64,
+        refining: Refining,
+        function: impl Fn(f64, usize) -> f64,
+    ) -> Extremum {
+        let mut highest: Vec<(f64, usize, Neighbourhood)> = Vec::new();
         let mut best = Extremum { position: 0.0, pairs: 0, value: f64::NEG_INFINITY };
         let mut lowest = f64::INFINITY;
         for (span, values) in &self.spans {
@@ -179,10 +199,21 @@ impl Trace {
                 if topped || twin || low >= value || value + OVERSHOOT * (value - low) < best.value {
                     continue;
                 }
-                let found = near.maximum(|position| sign * function(position, span.pairs));
+                if refining == Refining::Few {
+                    highest.push((value, span.pairs, near));
+                    continue;
+                }
+                let found = near.maximum(PLACE, |position| sign * function(position, span.pairs));
                 if found.1 > best.value {
                     best = Extremum { position: found.0, pairs: span.pairs, value: found.1 };
                 }
+            }
+        }
+        highest.sort_by(|one, other| other.0.total_cmp(&one.0));
+        for (_, pairs, near) in highest.into_iter().take(ROUGH_MOST) {
+            let found = near.maximum(ROUGH_PLACE, |position| sign * function(position, pairs));
+            if found.1 > best.value {
+                best = Extremum { position: found.0, pairs, value: found.1 };
             }
         }
         Extremum { value: sign * best.value, ..best }
@@ -224,11 +255,11 @@ impl Trace {
 
 impl Neighbourhood {
     /// The maximum of `function` next to a node that none of its neighbours exceeds.
-    fn maximum(&self, function: impl Fn(f64) -> f64) -> (f64, f64) {
+    fn maximum(&self, place: f64, function: impl Fn(f64) -> f64) -> (f64, f64) {
         let at = self.at;
         if let (Some(before), Some(after), false) = (self.before, self.after, self.joint) {
             let guess = vertex(before, at, after);
-            return maximum(&function, before.0, guess, after.0, PLACE * (after.0 - before.0));
+            return maximum(&function, before.0, guess, after.0, place * (after.0 - before.0));
         }
         for side in [self.before, self.after].into_iter().flatten() {
             let step = PROBE * (side.0 - at.0);
@@ -238,7 +269,7 @@ impl Neighbourhood {
                 let (slope, reach) = ((probe.1 - at.1) / step, side.0 - at.0);
                 let bend = (side.1 - at.1 - slope * reach) / (reach * reach);
                 let guess = at.0 + (-0.5 * slope / bend / reach).clamp(0.0, 1.0) * reach;
-                return maximum(&function, at.0.min(side.0), guess, at.0.max(side.0), PLACE * reach.abs());
+                return maximum(&function, at.0.min(side.0), guess, at.0.max(side.0), place * reach.abs());
             }
         }
         at
@@ -305,9 +336,9 @@ mod tests {
         let rows = SpanRule::new();
         let spans = [span(0.0, 1.0, [false, true]), span(1.0, 2.5, [true, false])];
         let check = |function: &dyn Fn(f64) -> f64, at: f64| {
-            let found = trace(&spans, function).largest(&rows, |x, _| function(x));
+            let found = trace(&spans, function).largest(&rows, Refining::Each, |x, _| function(x));
             assert!((found.value - function(at)).abs() < 1e-11, "{found:?}, not at {at}");
-            let found = trace(&spans, |x| -function(x)).smallest(&rows, |x, _| -function(x));
+            let found = trace(&spans, |x| -function(x)).smallest(&rows, Refining::Each, |x, _| -function(x));
             assert!((found.value + function(at)).abs() < 1e-11, "{found:?}, not at {at}");
         };
         for at in [0.0, 1e-3, 0.3, 0.999, 1.001, 1.7, 2.4999, 2.5] {

@@ -90,7 +90,7 @@ impl Gaps<'_> {
 
 impl Way<'_> {
     /// The smooth pieces on which both flanks are.
-    fn pieces(&self, point: f64, touch: &Touch) -> [usize; 2] {
+    pub(super) fn pieces(&self, point: f64, touch: &Touch) -> [usize; 2] {
         [self.point.piece(point), self.flank.piece(touch.curvature)]
     }
 

@@ -2,16 +2,14 @@
 //!
 //! Must not know: the other flank.
 
-use std::sync::Arc;
-
 use crate::gear::contact::separation::Facing;
 use crate::gear::modification::section::Section;
 use crate::numeric::extremum::maximum;
 use crate::numeric::quadratic::Quadratic;
 use crate::numeric::spline::Spline;
 
-mod bridge;
-pub(super) use bridge::PARTS;
+mod bends;
+pub(super) use bends::PARTS;
 
 /// Samples of a piece that may be a wave: enough for sixteen humps.
 const WAVE_SAMPLES: usize = 64;
@@ -42,29 +40,12 @@ pub(super) struct Outline<'a> {
     pieces: Vec<Piece>,
     /// Whether it is, in part, a spline through many points.
     pub(super) is_sampled: bool,
-    /// What stands for all parts, over the roll angle.
-    spline: Option<Told<'a>>,
+    /// What stands for all parts, over the roll angle, and is held at its ends.
+    spline: Option<&'a Spline>,
     /// The roll angle at the position 0, and by how much it grows with the position.
     rolls: [f64; 2],
     /// Positions, ascending, and the least depth that was sampled from there on; of profiles that may bend back.
     minimum: Vec<(f64, f64)>,
-}
-
-/// A spline over the roll angle, held at its ends: the only part's own, or one whose valleys are bridged.
-#[derive(Clone, Debug)]
-enum Told<'a> {
-    Own(&'a Spline),
-    Bridged(Arc<Spline>),
-}
-
-impl Told<'_> {
-    #[inline]
-    fn spline(&self) -> &Spline {
-        match self {
-            Self::Own(spline) => spline,
-            Self::Bridged(spline) => spline,
-        }
-    }
 }
 
 /// A smooth one, between two cuts.
@@ -116,7 +97,7 @@ impl<'a> Outline<'a> {
             cuts: vec![facing.start, facing.end],
             pieces: Vec::new(),
             is_sampled: parts.iter().any(|part| !part.knots().is_empty()),
-            spline: if let [part] = parts { part.spline().map(Told::Own) } else { None },
+            spline: if let [part] = parts { part.spline() } else { None },
             rolls: [0.0; 2],
             minimum: Vec::new(),
         }
@@ -164,7 +145,7 @@ impl<'a> Outline<'a> {
             cuts,
             pieces,
             is_sampled: self.is_sampled,
-            spline: self.spline.clone(),
+            spline: self.spline,
             rolls: self.rolls,
             minimum: Vec::new(),
         }
@@ -223,8 +204,8 @@ impl<'a> Outline<'a> {
                 // How far a spline bends back is known from its knots.
                 let shape = if shape == Convexity::Other { Convexity::Convex } else { shape };
                 let middle = self.roll(share(ends, 1, 2));
-                let is_held = self.spline.as_ref().is_some_and(|told| {
-                    let [first, last] = told.spline().ends();
+                let is_held = self.spline.is_some_and(|spline| {
+                    let [first, last] = spline.ends();
                     middle < first || middle > last
                 });
                 self.pieces.push(Piece { shape, is_held, quadratic: None });
@@ -285,8 +266,8 @@ impl<'a> Outline<'a> {
 
     fn sum(&self, position: f64) -> f64 {
         let roll = self.roll(position);
-        match &self.spline {
-            Some(told) => told.spline().value(within(told.spline(), roll)),
+        match self.spline {
+            Some(spline) => spline.value(within(spline, roll)),
             None => self.parts.iter().map(|part| part.depth(roll)).sum(),
         }
     }
@@ -318,6 +299,9 @@ impl<'a> Outline<'a> {
     }
 
     pub(super) fn piece(&self, position: f64) -> usize {
+        if self.pieces.len() == 1 {
+            return 0;
+        }
         let cuts = &self.cuts[1..self.cuts.len() - 1];
         cuts.partition_point(|cut| *cut <= position)
     }
@@ -338,8 +322,7 @@ impl<'a> Outline<'a> {
     #[inline]
     fn known_rates(&self, position: f64, piece: usize) -> Option<[f64; 3]> {
         let [start, rate] = self.rolls;
-        let [depth, slope, bend] = if let Some(told) = &self.spline {
-            let spline = told.spline();
+        let [depth, slope, bend] = if let Some(spline) = self.spline {
             let place = within(spline, start + rate * position);
             if self.pieces[piece].is_held { [spline.value(place), 0.0, 0.0] } else { spline.rates(place) }
         } else {

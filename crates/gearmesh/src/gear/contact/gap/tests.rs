@@ -2,6 +2,7 @@
 
 mod arcs;
 mod outlines;
+mod rough;
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
