@@ -56,6 +56,7 @@ struct Search<'a, 'b> {
 }
 
 /// Blocks of places in one direction from the nominal point.
+#[derive(Clone, Copy, Debug)]
 struct Direction {
     is_up: bool,
     block: usize,

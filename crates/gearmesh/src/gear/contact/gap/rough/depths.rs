@@ -79,12 +79,12 @@ impl Depths {
     pub(super) fn least_of(&self, block: usize) -> [f64; 2] {
         if block < self.blocks.len() { self.blocks[block] } else { [f64::INFINITY; 2] }
     }
+}
 
-    /// The block of the number of a place.
-    #[inline]
-    pub(super) fn block(&self, number: f64) -> usize {
-        low_bits((if number > 0.5 { number } else { 0.5 }) + (WHOLE - 0.5)) / BLOCK
-    }
+/// The block of the number of a place.
+#[inline]
+pub(super) fn block(number: f64) -> usize {
+    low_bits((if number > 0.5 { number } else { 0.5 }) + (WHOLE - 0.5)) / BLOCK
 }
 
 /// The whole number that is in the last bits.

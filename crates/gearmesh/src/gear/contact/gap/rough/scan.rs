@@ -5,7 +5,7 @@
 //! both to the second order in that angle. As S is a turn of the flank before the point, its roll length is longer by S: that of
 //! the two which grows. The flank whose roll length changes faster leads, in equal steps. Must not know: how places are followed.
 
-use super::depths::{BLOCK, Depths};
+use super::depths::{BLOCK, Depths, block as block_of};
 use crate::gear::contact::separation::Touch;
 
 /// The places of a block, with one more on either side.
@@ -93,12 +93,12 @@ impl<'a> Scan<'a> {
     /// The first and the last block of places.
     pub(super) fn blocks(&self) -> [usize; 2] {
         let [first, last] = self.range;
-        [first, last].map(|end| self.leads.block(self.leads.number(end)))
+        [first, last].map(|end| block_of(self.leads.number(end)))
     }
 
     /// The block of the nominal point.
     pub(super) fn nearest_block(&self) -> usize {
-        self.leads.block(self.leads.number(self.nominal[0]))
+        block_of(self.leads.number(self.nominal[0]))
     }
 
     /// The roll length of what follows, if the flanks did not stand apart.
@@ -126,7 +126,7 @@ impl<'a> Scan<'a> {
         let [follows, apart] = self.opposite(self.leads.place((block * BLOCK) as f64));
         let number = self.follows.number(follows);
         let gap = apart + self.leads.from(block * BLOCK)[0][0] + self.follows.between(number);
-        Edge { block: self.follows.block(number), number, apart, gap }
+        Edge { block: block_of(number), number, apart, gap }
     }
 
     /// What the gap is not less than in a block, one edge of which is nearer to the nominal point, and what the lower hulls of both flanks
