@@ -94,7 +94,7 @@ beyond = {
     "nul_in_title", "bore_of_nothing", "octal_teeth", "hexadecimal_teeth", "empty_file", "no_designs",
     "condition_of_a_figure", "constraint_sign", "constraint_unit", "constraint_unknown_column",
     "constraints_contradict", "objective_unknown", "objectives_for_one", "sizing_objectives", "units_of_a_claim",
-    "rating_design_alone", "trace_the_other_way", "trace_in_millimetres", "trace_smoothed_away", "trace_without_a_deviation",
+    "rating_design_alone", "trace_the_other_way", "trace_in_millimetres", "trace_without_a_deviation",
     "fit_unknown_path", "fit_unknown_cell", "fit_meets_nothing", "fit_of_too_little", "fit_bounds_upside_down",
     "fit_of_itself", "fit_meets_itself", "friction_at_corners", "friction_at_rest", "trace_in_no_file",
     "protuberance_leaves_no_flank", "protuberance_as_steep_as_the_flank", "allowance_leaves_no_tool",
