@@ -11,7 +11,7 @@ use gearmesh::gear::contact::CornerContact;
 use gearmesh::gear::geometry::{GearPair, Side};
 use gearmesh::gear::modification::curve::Curve;
 use gearmesh::gear::modification::flank::Flank;
-use gearmesh::gear::modification::measured::{Measured, Smoothing};
+use gearmesh::gear::modification::measured::Measured;
 use gearmesh::gear::modification::relief::{Amount, FromTip, Start};
 use gearmesh::gear::modification::tip_relief::TipRelief;
 use gearmesh::gear::modification::{Design, Gears};
@@ -86,14 +86,7 @@ fn traced(pair: &GearPair, mut beside: impl FnMut(f64) -> f64) -> Design {
         let trace = Measured {
             deviations: rolls.clone().map(|roll| beside(roll * flank.base_radius) - plain.depth(side, roll)).collect(),
             roll_lengths: Some(rolls.map(|roll| roll * flank.base_radius).collect()),
-            roll_angles: None,
-            diameters: None,
-            face_positions: None,
-            evaluation_start: None,
-            evaluation_end: None,
-            teeth: None,
-            module: None,
-            smoothing: Smoothing::None,
+            ..Measured::default()
         };
         design.add(gears, &trace, pair).expect("it is of these flanks");
     }

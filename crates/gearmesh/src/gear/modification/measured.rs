@@ -26,7 +26,7 @@ use declare::{Declared, Tagged};
 pub const MOST_POINTS: usize = 10_000;
 
 /// Flank as measured: deviations (ISO 1328-1) along the profile, across the face, or over both.
-#[derive(Clone, Debug, PartialEq, Declared)]
+#[derive(Clone, Debug, Default, PartialEq, Declared)]
 #[declared(name = "measured")]
 pub struct Measured {
     /// L_y: roll lengths of the points along the profile, r_b times the roll angle, from the root to the tip.

@@ -34,14 +34,7 @@ fn profile(pair: &GearPair, side: Side, count: usize, deviation: impl Fn(f64) ->
     Measured {
         deviations: rolls.iter().map(|roll| deviation(*roll)).collect(),
         roll_lengths: Some(rolls.iter().map(|roll| roll * flank.base_radius).collect()),
-        roll_angles: None,
-        diameters: None,
-        face_positions: None,
-        evaluation_start: None,
-        evaluation_end: None,
-        teeth: None,
-        module: None,
-        smoothing: Smoothing::None,
+        ..Measured::default()
     }
 }
 

@@ -3,7 +3,7 @@
 use super::*;
 use crate::gear::modification::Gears;
 use crate::gear::modification::curve::Curve;
-use crate::gear::modification::measured::{Measured, Smoothing};
+use crate::gear::modification::measured::Measured;
 use crate::gear::modification::relief::{Amount, FromTip, Start};
 use crate::gear::modification::tip_relief::TipRelief;
 use crate::gear::random::Random;
@@ -42,14 +42,7 @@ fn traced(pair: &GearPair, beside: [Beside; 2], random: &mut Random) -> Design {
         let trace = Measured {
             deviations: rolls.iter().map(|roll| more(*roll) - plain.depth(side, *roll)).collect(),
             roll_lengths: Some(rolls.iter().map(|roll| roll * flank.base_radius).collect()),
-            roll_angles: None,
-            diameters: None,
-            face_positions: None,
-            evaluation_start: None,
-            evaluation_end: None,
-            teeth: None,
-            module: None,
-            smoothing: Smoothing::None,
+            ..Measured::default()
         };
         design.add(gears, &trace, pair).unwrap();
     }

@@ -6,7 +6,7 @@ use crate::gear::contact::{CornerContact, SliceCoupling};
 use crate::gear::fixtures::{constant, coupled, design, least_gap_of, pair, varying};
 use crate::gear::geometry::{GearPair, Side};
 use crate::gear::modification::flank::Flank;
-use crate::gear::modification::measured::{Measured, Smoothing};
+use crate::gear::modification::measured::Measured;
 use crate::gear::modification::{Design, Gears};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
 use crate::gear::transmission_error::flanks::Flanks;
@@ -49,18 +49,7 @@ fn measured(pair: &GearPair, side: Side, trace: Trace) -> Measured {
             (Some(rolls), Some(places), sides.iter().flat_map(of).collect())
         }
     };
-    Measured {
-        roll_lengths: None,
-        roll_angles,
-        diameters: None,
-        face_positions,
-        deviations,
-        evaluation_start: None,
-        evaluation_end: None,
-        teeth: None,
-        module: None,
-        smoothing: Smoothing::None,
-    }
+    Measured { roll_angles, face_positions, deviations, ..Measured::default() }
 }
 
 fn gears(side: Side) -> Gears {
