@@ -38,6 +38,8 @@ pub(super) struct Rough {
     tangent_length: f64,
     /// By how much the gap may be lower between two places than at both \[m\].
     between: f64,
+    /// On how many stretches either flank bends back by more than the separation bends where it does so least.
+    pub(super) crests: usize,
 }
 
 /// A search for the least gap at one path position.
@@ -87,7 +89,13 @@ impl Rough {
         // What a function falls by between two places, and what lines between the other flank's places are off.
         let between = step * (0.25 * step * bends + 0.5 * kinks);
         let depths = flanks.map(|flank| Depths::new(flank, step));
-        Self { depths, step, base_radii, tangent_length: length, between }
+        // Over the own roll length, at its lower end.
+        let separation = |at: usize| {
+            let own = flanks[at].range()[0];
+            length * own / ((length - own) * base_radii[at] * base_radii[at])
+        };
+        let crests = flanks[0].crests(separation(0)) + flanks[1].crests(separation(1));
+        Self { depths, step, base_radii, tangent_length: length, between, crests }
     }
 
     /// The least of a gap and of those at all places of both flanks.

@@ -48,6 +48,21 @@ impl Outline<'_> {
         Some(least)
     }
 
+    /// On how many stretches it bends back by more than that \[1/m\], which begin a part of the path from each other: what rings about a kink is
+    /// one. None where a part of it does not know its own.
+    pub(in super::super) fn crests(&self, most: f64) -> usize {
+        let apart = (self.facing.end - self.facing.start) / PARTS as f64;
+        let (mut crests, mut on_crest, mut last) = (0, false, f64::INFINITY);
+        let known = self.visit_bends(|position, bend| {
+            let bends_back = bend < -most;
+            if bends_back && !on_crest && (position - last).abs() > apart {
+                (crests, last) = (crests + 1, position);
+            }
+            on_crest = bends_back;
+        });
+        if known.is_some() { crests } else { 0 }
+    }
+
     /// The least second derivative anywhere \[1/m\], not above 0, if it is known at once.
     pub(in super::super) fn least_bend(&self) -> Option<f64> {
         let [_, rate] = self.rolls;
