@@ -10,7 +10,6 @@ use super::cycle::{Elasticity, MeshCycle};
 use super::flanks::Flanks;
 use super::friction::Resisted;
 use super::sliced::Sliced;
-use super::trace::Refining;
 use super::within_reach::WithinReach;
 use crate::gear::contact::CornerContact;
 use crate::gear::contact::flattening::InSeries;
@@ -77,8 +76,6 @@ pub(super) enum Touching {
     },
 }
 
-/// How many positions there are for each crest at the least, where they follow rough flanks.
-const POSITIONS_PER_CREST: usize = 24;
 /// How closely the outermost places that can touch are found, over their distance from the path: what is looked at farther
 /// out costs time, and gaps there are large beside those that matter.
 const NARROW: f64 = 0.125;
@@ -243,17 +240,6 @@ impl<'a> LoadCase<'a> {
     #[inline]
     pub(super) fn touches_on_line(&self) -> bool {
         matches!(self.touching, Touching::LineOfAction)
-    }
-
-    /// Whether positions follow what rough flanks do. Where contact goes over from one crest to another there is a kink, and where pairs take
-    /// up load another one among them: between fewer positions neither is looked for, and a curve is seen as fine as they are.
-    pub(super) fn follows_crests(&self) -> bool {
-        self.flanks.crests() * POSITIONS_PER_CREST <= self.positions
-    }
-
-    /// Which extrema of a curve are refined.
-    pub(super) fn refining(&self) -> Refining {
-        if self.flanks.crests() == 0 { Refining::Each } else { Refining::Few }
     }
 
     /// Where slices hold each other.

@@ -6,10 +6,12 @@
 
 use super::change::Cut;
 use super::load_case::{CLOSEST, Equilibrium, LoadCase};
-use super::trace::{NODES, Span, Trace};
+use super::trace::{NODES, Refining, Span, Trace};
 
 /// Cuts that one span may be given for pairs that take up or lose load.
 const MOST_CUTS: usize = 24;
+/// How many positions there are for each crest at the least, where they follow rough flanks.
+const POSITIONS_PER_CREST: usize = 24;
 /// Roundings of a path position, from the roll angle where a modification starts and back.
 const ROUNDINGS: f64 = 4.0;
 /// What the last of a span's polynomials may hold of the transmission error: quadrature is then good to about the square
@@ -21,6 +23,17 @@ const ENDS: [usize; 2] = [0, NODES - 1];
 const EACH: [usize; NODES] = [0, 1, 2, 3, 4, 5, 6, 7];
 
 impl LoadCase<'_> {
+    /// Whether positions follow what rough flanks do. Where contact goes over from one crest to another there is a kink, and where pairs take
+    /// up load another one among them: between fewer positions neither is looked for, and a curve is seen as fine as they are.
+    pub(super) fn follows_crests(&self) -> bool {
+        self.flanks.crests() * POSITIONS_PER_CREST <= self.positions
+    }
+
+    /// Which extrema of a curve are refined.
+    pub(super) fn refining(&self) -> Refining {
+        if self.flanks.crests() == 0 { Refining::Each } else { Refining::Few }
+    }
+
     /// Visits the whole cycle in order, in smooth spans no longer than `longest` \[m\].
     pub fn walk(&self, longest: f64, mut visit: impl FnMut(&Span, &[Equilibrium; NODES])) {
         let closest = CLOSEST * self.cycle.period();
