@@ -54,6 +54,16 @@ impl Spline {
         self.pieces.iter().map(|piece| 2.0 * piece[3]).chain([at_end])
     }
 
+    /// Visits the knots, with the second derivative at each.
+    #[inline]
+    pub fn visit_bends(&self, mut visit: impl FnMut(f64, f64)) {
+        for piece in &self.pieces {
+            visit(piece[0], 2.0 * piece[3]);
+        }
+        let [_, last] = self.ends();
+        visit(last, self.rates(last)[2]);
+    }
+
     /// The least second derivative.
     #[must_use]
     pub fn least_bend(&self) -> f64 {
@@ -106,21 +116,30 @@ impl Spline {
         c0 + t * (c1 + t * (c2 + t * c3))
     }
 
-    /// The values at so many places from `first` on, in equal steps upwards; outside of its ends those at the ends.
+    /// The values at so many places above 0 whose squares grow in equal steps, from that of `first` on, of single precision; outside of its
+    /// ends those at the ends.
     #[must_use]
-    pub fn equidistant(&self, [first, step]: [f64; 2], count: usize) -> Vec<f64> {
-        let ends = self.ends();
-        let mut values = Vec::with_capacity(count);
-        let mut pieces = self.pieces.iter().peekable();
-        let mut piece = self.pieces[0];
-        for at in 0..count {
-            let x = (first + step * at as f64).clamp(ends[0], ends[1]);
-            while let Some(next) = pieces.next_if(|next| next[0] <= x) {
-                piece = *next;
+    #[allow(clippy::cast_possible_truncation)] // of single precision
+    pub fn at_roots(&self, [first, step]: [f64; 2], count: usize) -> Vec<f32> {
+        let [low, high] = self.between;
+        let mut pieces = self.pieces.iter();
+        let mut next = |above: f64| {
+            let piece = pieces.by_ref().find(|piece| piece[0] > above);
+            piece.copied().unwrap_or([f64::INFINITY; 5])
+        };
+        let (mut piece, mut after, mut square) = (self.pieces[0], next(self.pieces[0][0]), first);
+        let mut values = vec![0.0; count];
+        for value in &mut values {
+            let root = (if square > 0.0 { square } else { 0.0 }).sqrt();
+            let place = if root > low { root } else { low };
+            let place = if place < high { place } else { high };
+            while after[0] <= place {
+                (piece, after) = (after, next(after[0]));
             }
             let [begin, c0, c1, c2, c3] = piece;
-            let t = x - begin;
-            values.push(c0 + t * (c1 + t * (c2 + t * c3)));
+            let t = place - begin;
+            *value = (c0 + t * (c1 + t * (c2 + t * c3))) as f32;
+            square += step;
         }
         values
     }

@@ -207,11 +207,10 @@ impl<'a> Gaps<'a> {
         self.ways[0].point.is_sampled || self.ways[0].flank.is_sampled
     }
 
-    /// Whether profiles bend back more than the separation of the flanks bends, so that the gap has a kink wherever contact goes over from one
-    /// crest to another.
+    /// Between how many crests contact goes over on rough flanks.
     #[must_use]
-    pub fn is_rough(&self) -> bool {
-        self.rough.is_some()
+    pub fn crests(&self) -> usize {
+        self.rough.as_ref().map_or(0, |rough| rough.crests)
     }
 
     /// Path positions in `window` at which the gap is not smooth: ends of contact and of reliefs, and where the flanks

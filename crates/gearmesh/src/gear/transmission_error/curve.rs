@@ -138,8 +138,7 @@ impl LoadCase<'_> {
         let (mut loaded, mut share) = (0.0, 0.0_f64);
         self.walk(self.span_length(wanted.harmonics), |span, states| {
             error.spans.push((*span, states.map(|state| state.transmission_error())));
-            // The loaded pairs are the same all over the span, up to its ends.
-            loaded += (span.end - span.start) * states[1].loaded_pairs() as f64;
+            loaded += self.loaded_pairs(span, states);
             share = states.iter().map(|state| largest_share(&state.balance.loads)).fold(share, f64::max);
             if !wanted.pressure && !wanted.root_stress {
                 return self.extend(&mut points, span, states, wanted);
@@ -176,6 +175,25 @@ impl LoadCase<'_> {
             largest_root_stress: self.largest_root_stress(&roots),
         };
         (points, summary)
+    }
+
+    /// The integral of the number of loaded pairs over a span \[m\].
+    fn loaded_pairs(&self, span: &Span, states: &[Equilibrium; NODES]) -> f64 {
+        if self.follows_crests() {
+            // They are the same all over the span, up to its ends.
+            return (span.end - span.start) * states[1].loaded_pairs() as f64;
+        }
+        // Penetrations as lines between the nodes.
+        let between = |node: usize| {
+            let [from, to] = [node, node + 1].map(|node| span.position(&self.cycle.rows, node));
+            let share = |pair: usize| {
+                let [one, other] = [node, node + 1].map(|node| states[node].balance.penetration[pair]);
+                let loaded = one.max(0.0) + other.max(0.0);
+                if loaded > 0.0 { loaded / (one.abs() + other.abs()) } else { 0.0 }
+            };
+            (to - from) * (0..self.cycle.springs(span.pairs)).map(share).sum::<f64>()
+        };
+        (0..NODES - 1).map(between).sum()
     }
 
     /// The peak-to-peak transmission error \[m\], infinite beyond the model: the lean path for optimisers.

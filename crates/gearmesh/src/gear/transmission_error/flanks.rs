@@ -96,9 +96,10 @@ impl<'a> Flanks<'a> {
         self.sections.iter().chain([&self.middle]).filter_map(|section| section.gaps.as_ref()).any(Gaps::is_sampled)
     }
 
-    /// Whether a profile bends back more than the separation of the flanks bends.
-    pub(super) fn is_rough(&self) -> bool {
-        self.sections.iter().chain([&self.middle]).filter_map(|section| section.gaps.as_ref()).any(Gaps::is_rough)
+    /// Between how many crests contact goes over on rough flanks.
+    pub(super) fn crests(&self) -> usize {
+        let sections = self.sections.iter().chain([&self.middle]);
+        sections.filter_map(|section| section.gaps.as_ref()).map(Gaps::crests).fold(0, usize::max)
     }
 
     /// Whether nothing is taken off along the profiles.

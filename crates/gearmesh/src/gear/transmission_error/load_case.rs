@@ -77,6 +77,8 @@ pub(super) enum Touching {
     },
 }
 
+/// How many positions there are for each crest at the least, where they follow rough flanks.
+const POSITIONS_PER_CREST: usize = 24;
 /// How closely the outermost places that can touch are found, over their distance from the path: what is looked at farther
 /// out costs time, and gaps there are large beside those that matter.
 const NARROW: f64 = 0.125;
@@ -243,9 +245,15 @@ impl<'a> LoadCase<'a> {
         matches!(self.touching, Touching::LineOfAction)
     }
 
-    /// Which extrema of a curve are refined: of rough flanks it is seen as fine as positions are.
+    /// Whether positions follow what rough flanks do. Where contact goes over from one crest to another there is a kink, and where pairs take
+    /// up load another one among them: between fewer positions neither is looked for, and a curve is seen as fine as they are.
+    pub(super) fn follows_crests(&self) -> bool {
+        self.flanks.crests() * POSITIONS_PER_CREST <= self.positions
+    }
+
+    /// Which extrema of a curve are refined.
     pub(super) fn refining(&self) -> Refining {
-        if self.flanks.is_rough() { Refining::Few } else { Refining::Each }
+        if self.flanks.crests() == 0 { Refining::Each } else { Refining::Few }
     }
 
     /// Where slices hold each other.

@@ -25,6 +25,7 @@ impl LoadCase<'_> {
     pub fn walk(&self, longest: f64, mut visit: impl FnMut(&Span, &[Equilibrium; NODES])) {
         let closest = CLOSEST * self.cycle.period();
         let rounding = ROUNDINGS * f64::EPSILON * self.cycle.pair.tangent_length;
+        let most_cuts = if self.follows_crests() { MOST_CUTS } else { 0 };
         // Of one span after the other.
         let mut states = [Equilibrium::NONE; NODES];
         for zone in &self.cycle.zones {
@@ -45,7 +46,7 @@ impl LoadCase<'_> {
                 while panel <= panels {
                     let to = if panel < panels { start + width * panel } else { end };
                     let span = Span { start: from, end: to, pairs: zone.pairs, touches: [None; 2] };
-                    let mut cuts = MOST_CUTS;
+                    let mut cuts = most_cuts;
                     let last = self.state(if panel < panels { to } else { end - inwards[1] }, zone.pairs);
                     self.smooth(&span, &[first, last], &mut states, &mut cuts, &mut visit);
                     first = last;

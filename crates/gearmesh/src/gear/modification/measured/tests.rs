@@ -77,22 +77,27 @@ fn crowned(pair: &GearPair) -> Design {
 
 /// By how much the transmission error of one design differs from that of another at the other's own points, over the peak-to-peak of
 /// the other, or by how much that does.
-fn off(cycle: &MeshCycle, [one, other]: [&Design; 2], torque: f64) -> f64 {
-    let [one, other] = [one, other].map(|design| LoadCase::new(cycle, design, torque));
-    let size = other.peak_to_peak();
+fn off(cycle: &MeshCycle, designs: [&Design; 2], torque: f64) -> f64 {
+    let [one, other] = designs.map(|design| LoadCase::new(cycle, design, torque).peak_to_peak());
+    worst(cycle, designs, torque).max((one - other).abs()) / other
+}
+
+/// By how much it differs at the most \[m\].
+fn worst(cycle: &MeshCycle, designs: [&Design; 2], torque: f64) -> f64 {
+    let [one, other] = designs.map(|design| LoadCase::new(cycle, design, torque));
     let at = |point: &Point| {
         let [one, other] = [&one, &other].map(|loading| loading.state(point.cycle_position, point.pairs));
         (one.transmission_error() - other.transmission_error()).abs()
     };
-    let worst = other.curve(Wanted::default()).iter().map(at).fold(0.0, f64::max);
-    worst.max((one.peak_to_peak() - size).abs()) / size
+    other.curve(Wanted::default()).iter().map(at).fold(0.0, f64::max)
 }
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 6, ..ProptestConfig::default() })]
 
     /// Tier: second method; a trace of a parabolic relief gives that relief's transmission error as its points come closer: everywhere to 1e-6
-    /// where the relief starts without a kink. A kink no spline has: there it is off by the distance of the points times a tenth of the kink.
+    /// where the relief starts without a kink. A kink no spline has: there it is off by the distance of the points times a sixth of the kink, of
+    /// 400 reliefs the worst, and mostly a tenth.
     #[test]
     fn a_trace_of_a_relief_gives_its_transmission_error(
         amount in 6e-6..25e-6_f64, length in 2.5e-3..6e-3_f64, torque in 60.0..400.0_f64
@@ -103,8 +108,10 @@ proptest! {
         let off = [500, 8001].map(|count| off(&cycle, [&traced(&pair, &smooth, count), &smooth], torque));
         prop_assert!(off[1] <= 1e-6 && off[0] <= 2e-4, "{off:?}");
         let kinked = relieved(&pair, amount, length, Curve::Parabolic);
-        let [one, other] = [&traced(&pair, &kinked, 8001), &kinked].map(|design| LoadCase::new(&cycle, design, torque).peak_to_peak());
-        prop_assert!((one - other).abs() <= 1.9e-6 * 0.44 * amount / length / 10.0 + 1e-6 * other, "{one:e} {other:e}");
+        let trace = traced(&pair, &kinked, 8001);
+        let off = worst(&cycle, [&trace, &kinked], torque);
+        let largest = LoadCase::new(&cycle, &kinked, torque).summary(Wanted::default()).largest.value;
+        prop_assert!(off <= 1.9e-6 * 0.44 * amount / length / 6.0 + 1e-6 * largest, "{off:e} of {largest:e}");
     }
 }
 

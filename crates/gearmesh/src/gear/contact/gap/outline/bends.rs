@@ -14,15 +14,15 @@ impl Outline<'_> {
     fn visit_bends(&self, mut visit: impl FnMut(f64, f64)) -> Option<()> {
         let [at_zero, rate] = self.rolls;
         let (from, to) = (self.facing.start, self.facing.end);
-        let per_roll = 1.0 / rate;
+        let (per_roll, square) = (1.0 / rate, rate * rate);
         let mut put = |roll: f64, bend: f64| {
             let position = (roll - at_zero) * per_roll;
-            if (from..=to).contains(&position) {
-                visit(position, bend * rate * rate);
+            if position >= from && position <= to {
+                visit(position, bend * square);
             }
         };
         if let Some(spline) = self.spline {
-            spline.knots().iter().zip(spline.bends()).for_each(|(roll, bend)| put(*roll, bend));
+            spline.visit_bends(put);
             return Some(());
         }
         for roll in self.parts.iter().flat_map(Section::knots) {
@@ -42,10 +42,25 @@ impl Outline<'_> {
         let per_part = PARTS as f64 / (to - from);
         self.visit_bends(|position, bend| {
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a share
-            let part = (((position - from) * per_part) as usize).min(PARTS - 1);
-            least[part] = least[part].min(bend);
+            let part = (((position - from) * per_part) as u32 as usize).min(PARTS - 1);
+            least[part] = if bend < least[part] { bend } else { least[part] };
         })?;
         Some(least)
+    }
+
+    /// On how many stretches it bends back by more than that \[1/m\], which begin a part of the path from each other: what rings about a kink is
+    /// one. None where a part of it does not know its own.
+    pub(in super::super) fn crests(&self, most: f64) -> usize {
+        let apart = (self.facing.end - self.facing.start) / PARTS as f64;
+        let (mut crests, mut on_crest, mut last) = (0, false, f64::INFINITY);
+        let known = self.visit_bends(|position, bend| {
+            let bends_back = bend < -most;
+            if bends_back && !on_crest && (position - last).abs() > apart {
+                (crests, last) = (crests + 1, position);
+            }
+            on_crest = bends_back;
+        });
+        if known.is_some() { crests } else { 0 }
     }
 
     /// The least second derivative anywhere \[1/m\], not above 0, if it is known at once.
@@ -103,13 +118,17 @@ impl Outline<'_> {
         [self.facing.start, self.facing.end]
     }
 
-    /// The depths at so many places in equal steps, beyond its ends those at its ends.
-    pub(in super::super) fn depths(&self, [first, step]: [f64; 2], count: usize) -> Vec<f64> {
+    /// The depths at so many places in equal steps along the flank of a gear with this base radius, counted from its base circle; beyond its
+    /// ends those at its ends.
+    #[allow(clippy::cast_possible_truncation)] // of single precision
+    pub(in super::super) fn depths(&self, base_radius: f64, [first, step]: [f64; 2], count: usize) -> Vec<f32> {
+        // Half the square of the roll angle times the base radius is the length.
+        let per_length = 2.0 / base_radius;
         if let (Some(spline), false) = (self.spline, self.is_point) {
-            let [_, rate] = self.rolls;
-            return spline.equidistant([self.roll(first), step * rate], count);
+            return spline.at_roots([first * per_length, step * per_length], count);
         }
         let [from, to] = self.range();
-        (0..count).map(|at| self.depth((first + step * at as f64).clamp(from, to))).collect()
+        let place = |at: usize| base_radius * (per_length * (first + step * at as f64)).max(0.0).sqrt();
+        (0..count).map(|at| self.depth(place(at).clamp(from, to)) as f32).collect()
     }
 }

@@ -1,107 +1,114 @@
-//! What a flank has lost at equidistant places along it.
+//! What a flank has lost at places in equal steps along it.
 //!
-//! Must not know: the other flank.
+//! Depths are of single precision: of 100 µm that is 4 pm. Must not know: the other flank.
 
 use super::super::outline::Outline;
 
-/// Places that are looked at together.
-pub(super) const BLOCK: usize = 8;
-/// Half as much again as 2⁵²: what is added to it is rounded to a whole number, which is in its last bits.
-const WHOLE: f64 = 6_755_399_441_055_744.0;
+/// Places that are looked at together, with one more on either side.
+pub(super) const LANES: usize = 16;
+pub(super) const BLOCK: usize = LANES - 2;
+/// Blocks of which it is known together what the gap there is no less than.
+pub(super) const GROUP: usize = 16;
+/// Places before a flank and behind it, where depths are those at its ends: blocks of one flank lie askew to those of the other.
+const BESIDE: usize = 3 * BLOCK;
 
-/// Depths over roll lengths, in blocks of places, of which one lies before the flank and two behind it.
+/// Depths over the length along the flank from its base circle, in blocks of places.
 #[derive(Clone, Debug)]
 pub(super) struct Depths {
     /// The flank's own ends.
     pub(super) range: [f64; 2],
-    first: f64,
-    step: f64,
-    per_step: f64,
-    /// The depth at each place, and by how much it grows up to the next one.
-    places: Vec<[f64; 2]>,
-    /// Of each block the least depth, up to the first place of the next one, and what the lower hull of those is there.
-    blocks: Vec<[f64; 2]>,
+    /// Where its first place is \[m\].
+    pub(super) first: f64,
+    places: Vec<f32>,
+    /// A quarter of the second difference at each place.
+    bends: Vec<f32>,
+    /// Of each block, up to the first place of the next one, the least depth, between its places too, and what the lower hull of these is there;
+    /// without bound in some beside the flank.
+    least: Vec<f32>,
+    hull: Vec<f32>,
 }
 
 impl Depths {
-    /// In steps of this length.
-    pub(super) fn new(flank: &Outline, step: f64) -> Self {
-        let range = flank.range();
+    /// In steps of this length, towards the tip where it is above 0 and else from there; `flank` is over its own roll length.
+    pub(super) fn new(flank: &Outline, base_radius: f64, step: f64) -> Self {
+        let range = flank.range().map(|roll_length| along(roll_length, base_radius));
+        let length = step.abs();
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // not below 1
-        let count = ((range[1] - range[0]) / step).ceil() as usize;
-        let blocks = count / BLOCK + 4;
-        let first = range[0] - step * BLOCK as f64;
-        let depths = flank.depths([first, step], blocks * BLOCK + 1);
-        let mut places = Vec::with_capacity(depths.len());
-        for ends in depths.windows(2) {
-            places.push([ends[0], ends[1] - ends[0]]);
+        let count = ((range[1] - range[0]) / length).ceil() as usize;
+        let blocks = (count + 2 * BESIDE).div_ceil(BLOCK);
+        let lowest = range[0] - length * BESIDE as f64;
+        let count = blocks * BLOCK + 1;
+        let mut places = flank.depths(base_radius, [lowest, length], count);
+        let first = if step > 0.0 { lowest } else { lowest + length * (count - 1) as f64 };
+        if step < 0.0 {
+            places.reverse();
+        }
+        let mut bends = vec![0.0; places.len()];
+        for (bend, places) in bends[1..].iter_mut().zip(places.windows(3)) {
+            *bend = 0.25 * (places[0] - 2.0 * places[1] + places[2]);
         }
         let least = |block: usize| {
-            let of_block = &depths[block * BLOCK..=block * BLOCK + BLOCK];
-            of_block.iter().fold(f64::INFINITY, |least, depth| if *depth < least { *depth } else { least })
+            let of_block = block * BLOCK..=block * BLOCK + BLOCK;
+            // The parabola through a place and its neighbours is lowest by no more than an eighth of what it bends by below that place, if
+            // this is lower than they are; twice that is for cubics.
+            let lowest = places[of_block.clone()].iter().zip(&bends[of_block]).map(|(place, bend)| place - bend);
+            lowest.fold(f32::INFINITY, |least, depth| if depth < least { depth } else { least })
         };
-        let mut blocks: Vec<[f64; 2]> = (0..blocks).map(|block| [least(block); 2]).collect();
-        lower_hull(&mut blocks);
-        Self { range, first, step, per_step: 1.0 / step, places, blocks }
-    }
-
-    /// The number of a place, with its share of the way to the next one.
-    #[inline]
-    pub(super) fn number(&self, place: f64) -> f64 {
-        (place - self.first) * self.per_step
-    }
-
-    #[inline]
-    pub(super) fn place(&self, number: f64) -> f64 {
-        self.first + self.step * number
-    }
-
-    /// The depths from one place on, and by how much each grows.
-    #[inline]
-    pub(super) fn from(&self, number: usize) -> &[[f64; 2]] {
-        &self.places[number..]
-    }
-
-    /// The depth on the line between two places.
-    #[inline]
-    pub(super) fn between(&self, number: f64) -> f64 {
-        let whole = number + (WHOLE - 0.5);
-        let at = low_bits(whole);
-        if at >= self.places.len() {
-            return f64::INFINITY;
+        let inside = GROUP..GROUP + blocks;
+        let mut depths = vec![f32::INFINITY; blocks + 2 * GROUP];
+        for (depth, block) in depths[inside.clone()].iter_mut().zip(0..) {
+            *depth = least(block);
         }
-        let [depth, rise] = self.places[at];
-        depth + rise * (number - (whole - WHOLE))
+        let mut hull = depths.clone();
+        lower_hull(&mut hull[inside]);
+        Self { range, first, places, bends, least: depths, hull }
     }
 
-    /// The least depth of a block, and what the hull of all such is there; without bound where there is none.
+    /// The depths from one place on.
     #[inline]
-    pub(super) fn least_of(&self, block: usize) -> [f64; 2] {
-        if block < self.blocks.len() { self.blocks[block] } else { [f64::INFINITY; 2] }
+    pub(super) fn from(&self, number: usize) -> &[f32; LANES + 1] {
+        self.places[number..].first_chunk().expect("there are places on either side")
+    }
+
+    /// A quarter of their second differences.
+    #[inline]
+    pub(super) fn bends_from(&self, number: usize) -> &[f32; LANES + 1] {
+        self.bends[number..].first_chunk().expect("there are places on either side")
+    }
+
+    /// The least depths of a group of blocks, from this one on, and of one more.
+    #[inline]
+    pub(super) fn least(&self, from: isize) -> &[f32; GROUP + 1] {
+        group(&self.least, from)
+    }
+
+    /// Their lower hull.
+    #[inline]
+    pub(super) fn hull(&self, from: isize) -> &[f32; GROUP + 1] {
+        group(&self.hull, from)
     }
 }
 
-/// The block of the number of a place.
 #[inline]
-pub(super) fn block(number: f64) -> usize {
-    low_bits((if number > 0.5 { number } else { 0.5 }) + (WHOLE - 0.5)) / BLOCK
+fn group(of_blocks: &[f32], from: isize) -> &[f32; GROUP + 1] {
+    of_blocks[(from + GROUP.cast_signed()).cast_unsigned()..].first_chunk().expect("there are blocks on either side")
 }
 
-/// The whole number that is in the last bits.
-#[inline]
-#[allow(clippy::cast_possible_truncation)] // they are 32
-fn low_bits(whole: f64) -> usize {
-    whole.to_bits() as u32 as usize
+/// How long an involute is from its base circle to where its roll length is this one.
+pub(super) fn along(roll_length: f64, base_radius: f64) -> f64 {
+    0.5 * roll_length * roll_length / base_radius
 }
 
-/// Puts the lower convex hull of the first value of each into the second one.
-fn lower_hull(values: &mut [[f64; 2]]) {
-    let mut hull: Vec<usize> = Vec::with_capacity(values.len());
-    for next in 0..values.len() {
+/// Makes values their lower convex hull.
+#[allow(clippy::cast_possible_truncation)] // so many are the most
+fn lower_hull(values: &mut [f32]) {
+    let mut hull: Vec<u16> = Vec::with_capacity(values.len());
+    for next in 0..values.len() as u16 {
+        let value = |at: u16| values[usize::from(at)];
         while let [.., one, other] = hull[..] {
-            let rise = |from: usize, to: usize| values[to][0] - values[from][0];
             // Below the line from `one` to `next`.
-            if rise(one, other) * (next - one) as f64 <= rise(one, next) * (other - one) as f64 {
+            let (to_other, to_next) = (value(other) - value(one), value(next) - value(one));
+            if to_other * f32::from(next - one) <= to_next * f32::from(other - one) {
                 break;
             }
             hull.pop();
@@ -109,10 +116,10 @@ fn lower_hull(values: &mut [[f64; 2]]) {
         hull.push(next);
     }
     for ends in hull.windows(2) {
-        let [from, to] = [ends[0], ends[1]];
-        let slope = (values[to][0] - values[from][0]) / (to - from) as f64;
+        let [from, to] = [ends[0], ends[1]].map(usize::from);
+        let slope = (values[to] - values[from]) / f32::from(ends[1] - ends[0]);
         for at in from + 1..to {
-            values[at][1] = values[from][0] + slope * (at - from) as f64;
+            values[at] = values[at - 1] + slope;
         }
     }
 }

@@ -1,194 +1,266 @@
 //! Places beside the nominal point of contact, and the gap there, as a scan needs it.
 //!
-//! Contact moves by the same length along both flanks, so that f²/2r + q²/2r′ stays as it is, f and q being their radii of curvature, r and
-//! r′ the base radii. The angle between the flanks is then (f − s)/r + (T − s − q)/r′, and the separation S its integral along them:
-//! both to the second order in that angle. As S is a turn of the flank before the point, its roll length is longer by S: that of
-//! the two which grows. The flank whose roll length changes faster leads, in equal steps. Must not know: how places are followed.
+//! Contact moves by the same length along both flanks: their lengths from the base circles, f²/2r and q²/2r′ with the radii of curvature
+//! f and q and the base radii r and r′, add up to what they do at the nominal point s. Places in equal steps along one are therefore in
+//! equal steps along the other. The angle between the flanks is (f − s)/r + (T − s − q)/r′, and the separation S its integral along them:
+//! both to the second order in that angle. Must not know: how places are followed.
 
-use super::depths::{BLOCK, Depths, block as block_of};
-use crate::gear::contact::separation::Touch;
+use super::depths::{BLOCK, Depths, GROUP, LANES};
 
-/// The places of a block, with one more on either side.
-pub(super) const WITH_NEIGHBOURS: usize = BLOCK + 2;
+/// What makes numbers of places positive, whose fractions are wanted: the most places of all.
+const POSITIVE: usize = 1 << 20;
 
-/// Those places, counted from where the block begins.
-const NUMBERS: [f64; WITH_NEIGHBOURS] = [-1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
+/// The places of a block with their neighbours.
+const PLACES: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0];
+
+/// Where blocks of a group begin and end.
+const NUMBERS: [f32; GROUP + 1] = {
+    let mut numbers = [0.0; GROUP + 1];
+    let mut at = 0;
+    while at < GROUP {
+        numbers[at + 1] = numbers[at] + BLOCK as f32;
+        at += 1;
+    }
+    numbers
+};
+
+/// What all scans of two flanks have in common.
+#[derive(Clone, Debug)]
+pub(super) struct Flanks {
+    /// Of the pinion from its root, and of the gear from its tip.
+    pub(super) depths: [Depths; 2],
+    /// The distance of places \[m\].
+    pub(super) step: f64,
+    pub(super) base_radii: [f64; 2],
+}
 
 /// Both flanks at one path position.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scan<'a> {
-    leads: &'a Depths,
-    follows: &'a Depths,
-    /// Which gear leads.
-    leading: usize,
-    /// Roll lengths at the nominal point of which both leads and follows.
+    flanks: &'a Flanks,
+    /// Roll lengths at the nominal point.
     nominal: [f64; 2],
-    /// What the square of one roll length loses when that of the other grows, and the sum that stays.
-    ratio: f64,
+    /// What both lengths along the flanks add up to.
     sum: f64,
-    /// The separation, of the squares and the third powers of the distances from the nominal roll lengths.
-    squares: [f64; 2],
-    cubes: [f64; 2],
-    /// Beyond the ends of contact, far from the nominal point: what roll length of what follows and separation are more.
-    more: [f64; 2],
-    /// Between which roll lengths of the one that leads both flanks have points, and between which numbers of places.
+    /// By how many places that of the gear is ahead of the pinion's, and by which share of a step more.
+    ahead: isize,
+    share: f32,
+    /// The same in whole blocks.
+    blocks_ahead: isize,
+    /// For the separation at places: of each flank how the square of the roll length grows in a step, the nominal roll length, and what counts
+    /// for the square and the third power of the distance from it; and beyond the ends of contact what it is more.
+    turns: [[f32; 4]; 2],
+    more: f32,
+    /// The separation for which places are beside each other, by what length those of the pinion are farther for that, and by how many steps
+    /// roll lengths grow for what it is more.
+    aligned: f32,
+    shift: f64,
+    growths: [f32; 2],
+    /// Between which lengths along the pinion's flank both flanks have points, and between which numbers of places.
     pub(super) range: [f64; 2],
     numbers: [f64; 2],
 }
 
-/// Where a block begins or ends.
+/// Blocks beside each other.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edge {
-    /// The block of what follows, and the number of the place.
-    block: usize,
-    number: f64,
-    /// The separation, and the gap.
-    apart: f64,
-    gap: f64,
+pub(super) struct Group {
+    /// The first of them.
+    pub(super) from: isize,
+    /// What the gap is not less than in each, and not less than that by the lower hulls of both flanks.
+    pub(super) least: [f32; GROUP],
+    pub(super) hull: [f32; GROUP],
 }
 
 impl<'a> Scan<'a> {
-    /// `own` are the roll lengths of pinion and gear at the nominal point; beyond the ends of contact `end` is where the end of one flank
-    /// is nearest to the other one, which is that of this gear. None where the flanks have no place in common.
-    pub(super) fn new(
-        depths: &'a [Depths; 2],
-        base_radii: [f64; 2],
-        own: [f64; 2],
-        end: Option<(usize, Touch)>,
-    ) -> Option<Self> {
-        let leading = usize::from(own[0] * base_radii[1] > own[1] * base_radii[0]);
-        let following = 1 - leading;
-        let (leads, follows) = (&depths[leading], &depths[following]);
-        let (radius, other) = (base_radii[leading], base_radii[following]);
-        let nominal = [own[leading], own[following]];
-        let ratio = other / radius;
-        let sum = nominal[1] * nominal[1] + ratio * nominal[0] * nominal[0];
-        let against = |follows: f64| root((sum - follows * follows) / ratio);
-        let mut range =
-            [larger(leads.range[0], against(follows.range[1])), smaller(leads.range[1], against(follows.range[0]))];
-        let (mut squares, mut cubes) = ([0.0; 2], [0.0; 2]);
-        for (at, radius) in [radius, other].into_iter().enumerate() {
-            let per_square = 1.0 / (radius * radius);
-            (squares[at], cubes[at]) = (0.5 * nominal[at] * per_square, per_square / 3.0);
-        }
-        let known = end.map(|(flank, touch)| {
-            let tip = depths[1 - flank].range[1];
-            let (leads, follows) = if flank == leading { (touch.curvature, tip) } else { (tip, touch.curvature) };
-            range[usize::from(nominal[0] > leads)] = leads;
-            (leads, follows, touch.separation)
-        });
-        if range[0] > range[1] {
+    /// `nominal` are the roll lengths of pinion and gear at the nominal point. None where the flanks have no place in common.
+    #[inline]
+    pub(super) fn new(flanks: &'a Flanks, nominal: [f64; 2]) -> Option<Self> {
+        let Flanks { depths: [pinion, gear], step, base_radii } = flanks;
+        let per_step = 1.0 / step;
+        let per_radius = base_radii.map(|radius| 1.0 / radius);
+        let per_square = per_radius.map(|per| per * per);
+        let along = |at: usize| 0.5 * nominal[at] * nominal[at] * per_radius[at];
+        let mut scan = Self {
+            flanks,
+            nominal,
+            sum: along(0) + along(1),
+            ahead: 0,
+            share: 0.0,
+            blocks_ahead: 0,
+            turns: [0, 1].map(|at| {
+                let growth = if at == 0 { 2.0 } else { -2.0 } * base_radii[at] * step;
+                let [square, cube] = [0.5 * nominal[at] * per_square[at], per_square[at] * (1.0 / 3.0)];
+                [growth, nominal[at], square, cube].map(single)
+            }),
+            more: 0.0,
+            aligned: 0.0,
+            shift: 0.0,
+            growths: [0, 1].map(|at| single(nominal[at] * per_radius[at] * per_step)),
+            range: [0.0; 2],
+            numbers: [0.0; 2],
+        };
+        let sum = scan.sum;
+        scan.range = [larger(pinion.range[0], sum - gear.range[1]), smaller(pinion.range[1], sum - gear.range[0])];
+        if scan.range[0] > scan.range[1] {
             return None;
         }
-        let numbers = [leads.number(range[0]), leads.number(range[1])];
-        let more = [0.0; 2];
-        let mut scan = Self { leads, follows, leading, nominal, ratio, sum, squares, cubes, more, range, numbers };
-        if let Some((leads, follows, separation)) = known {
-            let [near, apart] = scan.opposite(leads);
-            scan.more = [follows - near, separation - apart];
-        }
+        scan.align(sum);
         Some(scan)
     }
 
-    /// The first and the last block of places.
-    pub(super) fn blocks(&self) -> [usize; 2] {
-        let [first, last] = self.range;
-        [first, last].map(|end| block_of(self.leads.number(end)))
-    }
-
-    /// The block of the nominal point.
-    pub(super) fn nearest_block(&self) -> usize {
-        block_of(self.leads.number(self.nominal[0]))
-    }
-
-    /// The roll length of what follows, if the flanks did not stand apart.
+    /// Lays places of both flanks beside each other whose lengths add up to this.
     #[inline]
-    fn following(&self, leads: f64) -> f64 {
-        root(self.sum - self.ratio * leads * leads)
+    fn align(&mut self, sum: f64) {
+        let Flanks { depths: [pinion, gear], step, .. } = self.flanks;
+        let ahead = (pinion.first + gear.first - sum) / step + POSITIVE as f64;
+        let whole = positive(ahead);
+        (self.ahead, self.share) = (whole.cast_signed() - POSITIVE.cast_signed(), single(ahead - whole as f64));
+        self.blocks_ahead = self.ahead.div_euclid(BLOCK.cast_signed());
+        self.numbers = self.range.map(|place| self.number(place));
     }
 
-    /// The roll length of what follows, and the separation.
+    /// The first and the last block of places, and that of the nominal point or what is nearest to it.
     #[inline]
-    fn opposite(&self, leads: f64) -> [f64; 2] {
-        let follows = self.following(leads);
-        let (one, other) = (leads - self.nominal[0], follows - self.nominal[1]);
-        let apart = one * one * (self.squares[0] + self.cubes[0] * one)
-            + other * other * (self.squares[1] + self.cubes[1] * other)
-            + self.more[1];
-        // What grows of both roll lengths is longer by the separation.
-        let growth = if one > 0.0 { self.ratio * leads / larger(follows, f64::MIN_POSITIVE) } else { 1.0 };
-        [follows + growth * apart + self.more[0], apart]
+    pub(super) fn blocks(&self) -> [usize; 3] {
+        let [radius, _] = self.flanks.base_radii;
+        let nominal = 0.5 * self.nominal[0] * self.nominal[0] / radius;
+        let number = self.number(nominal);
+        let [low, high] = self.numbers;
+        [low, high, smaller(larger(number, low), high)].map(|number| positive(number) / BLOCK)
     }
 
-    /// Where a block begins.
+    /// Roll lengths of pinion and gear at a length along the pinion's flank, and whether that of the pinion has grown.
     #[inline]
-    pub(super) fn edge(&self, block: usize) -> Edge {
-        let [follows, apart] = self.opposite(self.leads.place((block * BLOCK) as f64));
-        let number = self.follows.number(follows);
-        let gap = apart + self.leads.from(block * BLOCK)[0][0] + self.follows.between(number);
-        Edge { block: block_of(number), number, apart, gap }
+    pub(super) fn roll_lengths(&self, place: f64) -> ([f64; 2], bool) {
+        let [pinion, gear] = self.flanks.base_radii;
+        let roll_lengths = [root(2.0 * pinion * place), root(2.0 * gear * (self.sum - place))];
+        (roll_lengths, roll_lengths[0] >= self.nominal[0])
     }
 
-    /// What the gap is not less than in a block, one edge of which is nearer to the nominal point, and what the lower hulls of both flanks
-    /// make of it. It falls from one edge to the other by no more than `dip` below both.
+    /// Counts the separation, and by how much the roll length of the flank that is met is more, from what they are at these roll lengths, which
+    /// are far from the nominal ones.
+    pub(super) fn count_from(&mut self, roll_lengths: [f64; 2], separation: f64, met: [f64; 2]) {
+        let [pinion, gear] = [0, 1].map(|at| {
+            let [_, _, square, cube] = self.turns[at].map(f64::from);
+            let off = roll_lengths[at] - self.nominal[at];
+            off * off * (square + cube * off)
+        });
+        self.more = single(separation - pinion - gear);
+        let along = |at: usize, roll_length: f64| 0.5 * roll_length * roll_length / self.flanks.base_radii[at];
+        self.shift = along(0, met[0]) - along(0, roll_lengths[0]);
+        self.align(along(0, met[0]) + along(1, met[1]));
+        self.aligned = single(separation);
+    }
+
+    /// How far the flanks stand apart at places so many steps from this one.
     #[inline]
-    pub(super) fn at_least(&self, block: usize, near: &Edge, far: &Edge, dip: f64) -> [f64; 2] {
-        let ([one, one_hull], [other, other_hull]) =
-            (self.follows.least_of(near.block), self.follows.least_of(far.block));
-        let [least, hull] = self.leads.least_of(block);
-        let least = larger(near.apart + least + smaller(one, other), smaller(near.gap, far.gap) - dip);
-        [least, near.apart + hull + smaller(one_hull, other_hull)]
+    fn separations<const N: usize>(&self, from: isize, mut steps: [f32; N]) -> [f32; N] {
+        let [pinion, gear] = self.flanks.base_radii;
+        let place = self.at(from as f64);
+        // In single precision, in which roll lengths are known to a nanometre, and separations to a picometre.
+        let squares = [2.0 * pinion * place, 2.0 * gear * (self.sum - place)].map(single);
+        for step in &mut steps {
+            *step = part(squares[0], self.turns[0], *step) + part(squares[1], self.turns[1], *step) + self.more;
+        }
+        steps
     }
 
-    /// The gap at all places of a block between these edges, with one more on either side; without bound where both flanks have none.
-    pub(super) fn values(&self, block: usize, [from, to]: [&Edge; 2]) -> [f64; WITH_NEIGHBOURS] {
+    /// The blocks from this one on, of which one may be that of the nominal point.
+    #[inline]
+    pub(super) fn group(&self, from: isize, nominal: usize) -> Group {
+        let [pinion, gear] = &self.flanks.depths;
+        let apart = self.separations(from * BLOCK.cast_signed(), NUMBERS);
+        let mut nearer = [0.0; GROUP];
+        for at in 0..GROUP {
+            nearer[at] = if apart[at] < apart[at + 1] { apart[at] } else { apart[at + 1] };
+        }
+        if let Ok(at) = usize::try_from(nominal.cast_signed() - from)
+            && at < GROUP
+        {
+            nearer[at] = self.more;
+        }
+        let ahead = from + self.blocks_ahead;
+        let both = |own: &[f32; GROUP + 1], other: &[f32; GROUP + 1]| {
+            let mut both = nearer;
+            for at in 0..GROUP {
+                both[at] += own[at] + if other[at] < other[at + 1] { other[at] } else { other[at + 1] };
+            }
+            both
+        };
+        let (least, hull) = (both(pinion.least(from), gear.least(ahead)), both(pinion.hull(from), gear.hull(ahead)));
+        Group { from, least, hull }
+    }
+
+    /// The gap at all places of a block with one more on either side; without bound where both flanks have none. The roll length of the pinion's
+    /// flank grows by the separation if `is_up`, and else that of the gear's.
+    #[inline]
+    pub(super) fn values(&self, block: usize, is_up: bool) -> [f32; LANES] {
         let first = block * BLOCK - 1;
-        let [middle, apart] = self.opposite(self.leads.place((block * BLOCK + BLOCK / 2) as f64));
-        let middle = self.follows.number(middle);
-        // Parabolas: what is of third order over so short a way is less than rounding of the depths.
-        let apart = parabola([from.apart, apart, to.apart]);
-        let numbers = parabola([from.number, middle, to.number]);
-        let (mut values, mut places) = ([0.0; WITH_NEIGHBOURS], [0.0; WITH_NEIGHBOURS]);
-        for (at, (value, place)) in values.iter_mut().zip(&mut places).enumerate() {
-            let along = NUMBERS[at];
-            *value = apart[0] + along * (apart[1] + along * apart[2]);
-            *place = numbers[0] + along * (numbers[1] + along * numbers[2]);
+        let ahead = first.wrapping_add_signed(self.ahead);
+        let [pinion, gear] = &self.flanks.depths;
+        let (pinion, bends, gear) = (pinion.from(first), gear.bends_from(ahead), gear.from(ahead));
+        let mut values = self.separations(first.cast_signed(), PLACES);
+        let share = self.share;
+        // A quarter of the second differences at both is what a cubic about falls by between two places.
+        let fall = share * (share - 1.0);
+        let apart = values;
+        for at in 0..LANES {
+            values[at] +=
+                pinion[at] + (gear[at] + share * (gear[at + 1] - gear[at]) + fall * (bends[at] + bends[at + 1]));
         }
-        let depths = &self.leads.from(first)[..WITH_NEIGHBOURS];
-        for ((value, place), depth) in values.iter_mut().zip(places).zip(depths) {
-            *value += depth[0] + self.follows.between(place);
+        if self.aligned > 0.0 {
+            for at in 0..LANES {
+                let rise = if is_up { pinion[at + 1] - pinion[at] } else { gear[at] - gear[at + 1] };
+                values[at] += (apart[at] - self.aligned) * self.growths[usize::from(!is_up)] * rise;
+            }
         }
-        let [low, high] = [self.numbers[0] - first as f64, self.numbers[1] - first as f64];
-        if low > 0.0 || high < (WITH_NEIGHBOURS - 1) as f64 {
+        let [low, high] = self.numbers;
+        if low > first as f64 || high < (first + LANES) as f64 {
             for (at, value) in values.iter_mut().enumerate() {
-                if (at as f64) < low || (at as f64) > high {
-                    *value = f64::INFINITY;
+                if ((first + at) as f64) < low || (first + at) as f64 > high {
+                    *value = f32::INFINITY;
                 }
             }
         }
         values
     }
 
-    /// Which way off the line of action a place is, of the gear's points before the pinion's flank or the reverse, and how far.
-    pub(super) fn place(&self, leads: f64) -> (usize, f64) {
-        let leads = leads.clamp(self.range[0], self.range[1]);
-        let ahead = [leads - self.nominal[0], self.opposite(leads)[0] - self.nominal[1]];
-        let [pinion, gear] = [ahead[self.leading], ahead[1 - self.leading]];
-        if pinion >= 0.0 { (0, larger(-gear, 0.0)) } else { (1, -pinion) }
+    /// The distance of places.
+    pub(super) fn step(&self) -> f64 {
+        self.flanks.step
     }
 
-    /// The roll length at a number of a place.
+    /// The length along the pinion's flank at a number of a place.
+    #[inline]
     pub(super) fn at(&self, number: f64) -> f64 {
-        self.leads.place(number)
+        self.flanks.depths[0].first + self.flanks.step * number - self.shift
+    }
+
+    #[inline]
+    fn number(&self, place: f64) -> f64 {
+        (place + self.shift - self.flanks.depths[0].first) / self.flanks.step
     }
 }
 
-/// The coefficients of the parabola through values at both ends and in the middle of a block, against the number of the place in it.
+/// What one flank turns by, from the square of its roll length at a place and as in [`Scan`].
 #[inline]
-fn parabola([from, middle, to]: [f64; 3]) -> [f64; 3] {
-    const HALF: f64 = 0.5 * BLOCK as f64;
-    let bend = (from - 2.0 * middle + to) / (2.0 * HALF * HALF);
-    [from, (to - from) / (2.0 * HALF) - 2.0 * HALF * bend, bend]
+fn part(square: f32, [growth, nominal, squares, cubes]: [f32; 4], steps: f32) -> f32 {
+    let square = square + growth * steps;
+    let off = (if square > 0.0 { square } else { 0.0 }).sqrt() - nominal;
+    off * off * (squares + cubes * off)
+}
+
+#[inline]
+#[allow(clippy::cast_possible_truncation)] // lengths of gears
+pub(super) fn single(value: f64) -> f32 {
+    value as f32
+}
+
+/// The whole part; of what is below 0 that is 0.
+#[inline]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+pub(super) fn positive(number: f64) -> usize {
+    number as u32 as usize
 }
 
 /// As these are one instruction.

@@ -104,3 +104,36 @@ fn the_gap_of_rough_flanks_is_the_least_of_a_dense_scan() {
         assert!(worst[0] < 2e-11 && worst[1] < 0.7e-9, "{sides:?}: {worst:?}");
     }
 }
+
+/// Tier: second method; traces of reliefs that start with a kink, in points so close that the gap hardly bends between two places of a scan, at
+/// 2,000 positions each: the lowest place is never lost. What a spline cannot follow is a sixth of the kink times the distance of the points.
+#[test]
+fn the_lowest_place_is_found_wherever_blocks_of_places_begin() {
+    let pair = pair();
+    for (amount, length) in [(24e-6, 5.5e-3), (12e-6, 4.2e-3), (18e-6, 3e-3)] {
+        let mut plain = Design::default();
+        let (start, curve) = (Start::Length(length), Curve::Parabolic);
+        let relief = TipRelief { amount: Amount::Depth(amount), start, counted_from: FromTip::Tip, curve };
+        plain.add(Gears::Both, &relief, &pair).unwrap();
+        let mut design = Design::default();
+        for (gears, side) in [(Gears::Pinion, Side::Pinion), (Gears::Gear, Side::Gear)] {
+            let flank = Flank::new(&pair, side);
+            let step = (flank.tip_roll - flank.root_roll) / 8000.0;
+            let rolls: Vec<f64> = (0..=8000).map(|at| flank.root_roll + step * f64::from(at)).collect();
+            let trace = Measured {
+                deviations: rolls.iter().map(|roll| -plain.depth(side, *roll)).collect(),
+                roll_lengths: Some(rolls.iter().map(|roll| roll * flank.base_radius).collect()),
+                ..Measured::default()
+            };
+            design.add(gears, &trace, &pair).unwrap();
+        }
+        let profiles = [&design, &plain].map(|design| design.profiles(0.0));
+        let [traced, exact] = [0, 1].map(|at| Gaps::new(&pair, &profiles[at]));
+        assert!(traced.crests() > 0, "the spline rings about the kink");
+        for place in 0..=2000 {
+            let s = pair.start_of_contact + (pair.end_of_contact - pair.start_of_contact) * f64::from(place) / 2000.0;
+            let off = traced.at(s).unwrap() - exact.at(s).unwrap();
+            assert!(off.abs() <= 1.9e-6 * 0.44 * amount / length / 6.0, "{amount} {length} at {s}: {off:e}");
+        }
+    }
+}
