@@ -37,8 +37,10 @@ const WAITING: usize = 8;
 const HALF: usize = GROUP / 2;
 /// Parts of the path in each of which it is known what a scan misses.
 const PARTS: usize = 32;
+/// How near to a base circle it is asked how much the gap bends, over the length of the line of action.
+const NEAREST: f64 = 1e-3;
 /// How far apart places are at the most, over the shortest wave over 2π.
-const SHORTEST: f64 = 1.5;
+const SHORTEST: f64 = 2.2;
 
 /// Both flanks for scans.
 #[derive(Clone, Debug)]
@@ -82,6 +84,8 @@ impl Rough {
         let waves = outlines.map(|outline| SHORTEST * outline.shortest());
         // By how much the gap bends and its slope grows along the flanks, and how far apart places may be for that.
         let needed = |s: f64| {
+            // A flank may begin at its base circle.
+            let s = s.clamp(NEAREST * pair.tangent_length, (1.0 - NEAREST) * pair.tangent_length);
             // How roll lengths grow.
             let [one, two] = [base_radii[0] / s, base_radii[1] / (pair.tangent_length - s)];
             let of_separation = one / base_radii[0] + two / base_radii[1];
@@ -208,23 +212,22 @@ impl Search<'_, '_> {
 
     /// Lets the places of a block wait that may be the lowest.
     fn look_at(&mut self, block: usize, is_up: bool) {
-        let values = self.scan.values(block, is_up);
+        let mut values = self.scan.values(block, is_up);
+        // A place is not as high in the next block, to the last bits: neither may leave the lowest one to the other.
+        values[0] += self.rounding;
+        values[LANES - 1] += self.rounding;
         let mut least = [f32::INFINITY; 4];
-        for four in values.chunks_exact(4) {
-            for (least, value) in least.iter_mut().zip(four) {
-                *least = if *value < *least { *value } else { *least };
-            }
+        for (at, value) in values.iter().enumerate() {
+            let lane = at % 4;
+            least[lane] = if *value < least[lane] { *value } else { least[lane] };
         }
         let reach = self.seen + self.dip;
         if least[0] >= reach && least[1] >= reach && least[2] >= reach && least[3] >= reach {
             return;
         }
-        // The same place is not as high in the next block, to the last bits: neither may leave it to the other one.
-        let mut slack = [0.0; LANES];
-        (slack[0], slack[LANES - 2]) = (self.rounding, self.rounding);
         for place in 1..LANES - 1 {
             let [before, value, after] = [values[place - 1], values[place], values[place + 1]];
-            if value < reach && value <= before + slack[place - 1] && value < after + slack[place] {
+            if value < reach && value <= before && value < after {
                 self.offer(block, place, [before, value, after]);
             }
         }

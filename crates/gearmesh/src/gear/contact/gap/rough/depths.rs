@@ -8,7 +8,7 @@ use super::super::outline::Outline;
 pub(super) const LANES: usize = 16;
 pub(super) const BLOCK: usize = LANES - 2;
 /// Blocks of which it is known together what the gap there is no less than.
-pub(super) const GROUP: usize = 16;
+pub(super) const GROUP: usize = 8;
 /// Places before a flank and behind it, where depths are those at its ends: blocks of one flank lie askew to those of the other.
 const BESIDE: usize = 3 * BLOCK;
 
