@@ -135,6 +135,9 @@ impl Rough {
             let (roll_lengths, is_ahead) = scan.roll_lengths(scan.range[beyond]);
             let Here { apart, met, .. } = near.at(roll_lengths, is_ahead);
             scan.count_from(roll_lengths, apart, met);
+            if scan.range[0] > scan.range[1] {
+                return gap;
+            }
         }
         let waiting = [(0.0, 0.0); WAITING];
         let rounding = ROUNDING * single(self.tangent_length);

@@ -148,7 +148,14 @@ impl<'a> Scan<'a> {
         self.more = single(separation - pinion - gear);
         let along = |at: usize, roll_length: f64| 0.5 * roll_length * roll_length / self.flanks.base_radii[at];
         self.shift = along(0, met[0]) - along(0, roll_lengths[0]);
-        self.align(along(0, met[0]) + along(1, met[1]));
+        let sum = along(0, met[0]) + along(1, met[1]);
+        // Both have points at the places that lie beside each other now.
+        let [pinion, gear] = &self.flanks.depths;
+        self.range = [
+            larger(self.range[0], larger(pinion.range[0], sum - gear.range[1]) - self.shift),
+            smaller(self.range[1], smaller(pinion.range[1], sum - gear.range[0]) - self.shift),
+        ];
+        self.align(sum);
         self.aligned = single(separation);
     }
 
