@@ -16,6 +16,8 @@ pub struct Spline {
     bends_between: [f64; 2],
     /// The first and the last knot.
     between: [f64; 2],
+    /// How short its waves are.
+    shortest: f64,
 }
 
 impl Spline {
@@ -42,9 +44,15 @@ impl Spline {
             index: Index::new(knots),
             bends_between: [0.0; 2],
             between: [knots[0], knots[knots.len() - 1]],
+            shortest: f64::INFINITY,
         };
         let none = [f64::INFINITY, f64::NEG_INFINITY];
         spline.bends_between = spline.bends().fold(none, |[least, most], bend| [least.min(bend), most.max(bend)]);
+        let [low, high] = spline.bends_between;
+        let third = spline.pieces.iter().fold(0.0_f64, |most, piece| most.max(piece[4].abs()));
+        if third > 0.0 {
+            spline.shortest = low.abs().max(high.abs()) / (6.0 * third);
+        }
         spline
     }
 
@@ -52,6 +60,16 @@ impl Spline {
     pub fn bends(&self) -> impl Iterator<Item = f64> {
         let at_end = self.rates(self.ends()[1])[2];
         self.pieces.iter().map(|piece| 2.0 * piece[3]).chain([at_end])
+    }
+
+    /// Visits the knots, with the second derivative at each.
+    #[inline]
+    pub fn visit_bends(&self, mut visit: impl FnMut(f64, f64)) {
+        for piece in &self.pieces {
+            visit(piece[0], 2.0 * piece[3]);
+        }
+        let [_, last] = self.ends();
+        visit(last, self.rates(last)[2]);
     }
 
     /// The least second derivative.
@@ -106,21 +124,27 @@ impl Spline {
         c0 + t * (c1 + t * (c2 + t * c3))
     }
 
-    /// The values at so many places from `first` on, in equal steps upwards; outside of its ends those at the ends.
+    /// The values at so many places above 0 whose squares grow in equal steps, from that of `first` on, of single precision; outside of its
+    /// ends those at the ends.
     #[must_use]
-    pub fn equidistant(&self, [first, step]: [f64; 2], count: usize) -> Vec<f64> {
-        let ends = self.ends();
-        let mut values = Vec::with_capacity(count);
-        let mut pieces = self.pieces.iter().peekable();
-        let mut piece = self.pieces[0];
-        for at in 0..count {
-            let x = (first + step * at as f64).clamp(ends[0], ends[1]);
-            while let Some(next) = pieces.next_if(|next| next[0] <= x) {
-                piece = *next;
+    #[allow(clippy::cast_possible_truncation)] // of single precision
+    pub fn at_roots(&self, [first, step]: [f64; 2], count: usize) -> Vec<f32> {
+        let [low, high] = self.between;
+        let (mut pieces, mut square) = (&self.pieces[..], first);
+        let mut values = vec![0.0; count];
+        for value in &mut values {
+            let root = (if square > 0.0 { square } else { 0.0 }).sqrt();
+            let place = if root > low { root } else { low };
+            let place = if place < high { place } else { high };
+            while let [_, next, ..] = pieces
+                && next[0] <= place
+            {
+                pieces = &pieces[1..];
             }
-            let [begin, c0, c1, c2, c3] = piece;
-            let t = x - begin;
-            values.push(c0 + t * (c1 + t * (c2 + t * c3)));
+            let [begin, c0, c1, c2, c3] = pieces[0];
+            let t = place - begin;
+            *value = (c0 + t * (c1 + t * (c2 + t * c3))) as f32;
+            square += step;
         }
         values
     }
@@ -129,9 +153,7 @@ impl Spline {
     /// for a parabola.
     #[must_use]
     pub fn shortest(&self) -> f64 {
-        let most = self.pieces.iter().fold(0.0_f64, |most, piece| most.max(piece[4].abs()));
-        let [low, high] = self.bends_between;
-        if most > 0.0 { low.abs().max(high.abs()) / (6.0 * most) } else { f64::INFINITY }
+        self.shortest
     }
 
     /// The slope at every knot.
@@ -330,6 +352,21 @@ mod tests {
         for count in [20, 40, 80] {
             let order = libm::log2(off(count) / off(2 * count));
             assert!((order - 4.0).abs() < 0.5, "{count}: {order}");
+        }
+    }
+
+    /// Tier: second method; values in a row are those one by one, held beyond both ends.
+    #[test]
+    fn values_in_a_row_are_those_one_by_one() {
+        let spline = Spline::new(&KNOTS[1..], &VALUES[1..]);
+        for (count, step) in [(80, 0.05), (700, 0.005)] {
+            let values = spline.at_roots([-0.1, step], count);
+            assert_eq!(values.len(), count);
+            for (at, value) in (0..).zip(values) {
+                let square: f64 = -0.1 + step * f64::from(at);
+                let exact = spline.value(square.max(0.0).sqrt().clamp(KNOTS[1], KNOTS[6]));
+                assert!((f64::from(value) - exact).abs() < 1e-6, "{square}: {value} {exact}");
+            }
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! Must not know: tables, units other than SI.
 
-use super::load_case::{Equilibrium, LoadCase};
+use super::load_case::{Equilibrium, LoadCase, OUT_OF_REACH};
 use super::pressure::{LargestPressure, Pressed};
 use super::root_stress::LargestRootStress;
 use super::trace::{Extremum, NODES, Span, Trace};
@@ -189,6 +189,10 @@ impl LoadCase<'_> {
             let share = |pair: usize| {
                 let [one, other] = [node, node + 1].map(|node| states[node].balance.penetration[pair]);
                 let loaded = one.max(0.0) + other.max(0.0);
+                if loaded > 0.0 && one.min(other) <= OUT_OF_REACH {
+                    // How far apart it is then is not known.
+                    return 0.5;
+                }
                 if loaded > 0.0 { loaded / (one.abs() + other.abs()) } else { 0.0 }
             };
             (to - from) * (0..self.cycle.springs(span.pairs)).map(share).sum::<f64>()

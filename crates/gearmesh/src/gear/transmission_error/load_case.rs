@@ -82,7 +82,7 @@ const NARROW: f64 = 0.125;
 const MOST_HALVINGS: usize = 60;
 
 /// The penetration of a pair that is out of reach \[m\]: far from any contact.
-const OUT_OF_REACH: f64 = -1.0;
+pub(super) const OUT_OF_REACH: f64 = -1.0;
 
 /// Equilibrium at one position.
 #[derive(Clone, Copy, Debug, PartialEq)]

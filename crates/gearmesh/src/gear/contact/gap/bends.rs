@@ -6,7 +6,7 @@ use super::outline::{Outline, PARTS};
 use crate::gear::contact::separation::Facing;
 
 /// How much of what the separation bends by is left under splines that bend back, for the gap to have one least place.
-const LEFT: f64 = 0.1;
+const LEFT: f64 = 0.5;
 
 /// Whether profiles bend back by more than the separation bends, anywhere: their sum is not convex then, and the gap has more than one place
 /// where it is low.
@@ -17,12 +17,15 @@ pub(super) fn are_rough(facing: &Facing, point: &Outline, flank: &Outline) -> bo
     if !(point.is_convex() && flank.is_convex()) {
         return true;
     }
-    // Mostly nothing bends back anywhere by what is the least all over the path.
+    // Mostly nothing bends back anywhere by what is the least all over the path, or something by more than the most.
     if let (Some(one), Some(other)) = (point.least_bend(), flank.least_bend()) {
         let [start, end] = [facing.start, facing.end].map(|place| facing.on_line(place));
-        let rate = start.rate.max(end.rate);
-        if -one - other * rate * rate <= (1.0 - LEFT) * facing.least_bend() {
+        let (least, most) = (start.rate.min(end.rate), start.rate.max(end.rate));
+        if -one - other * most * most <= (1.0 - LEFT) * facing.least_bend() {
             return false;
+        }
+        if (-one).max(-other * least * least) > (1.0 - LEFT) * start.bend {
+            return true;
         }
     }
     let none = [f64::NEG_INFINITY; PARTS];

@@ -9,20 +9,21 @@ use crate::gear::modification::section::Section;
 pub(in super::super) const PARTS: usize = 32;
 
 impl Outline<'_> {
-    /// Visits all knots of splines that lie on the path: the position, and the second derivative of the profile there, between two knots
-    /// straight; none where a part of it does not know its own.
+    /// Visits all knots of splines that lie on the path: the roll angle, and the second derivative of the profile there over the position,
+    /// between two knots straight; none where a part of it does not know its own.
+    #[inline]
     fn visit_bends(&self, mut visit: impl FnMut(f64, f64)) -> Option<()> {
         let [at_zero, rate] = self.rolls;
-        let (from, to) = (self.facing.start, self.facing.end);
-        let per_roll = 1.0 / rate;
+        let ends = [self.facing.start, self.facing.end].map(|position| at_zero + rate * position);
+        let (from, to) = if rate > 0.0 { (ends[0], ends[1]) } else { (ends[1], ends[0]) };
+        let square = rate * rate;
         let mut put = |roll: f64, bend: f64| {
-            let position = (roll - at_zero) * per_roll;
-            if (from..=to).contains(&position) {
-                visit(position, bend * rate * rate);
+            if roll >= from && roll <= to {
+                visit(roll, bend * square);
             }
         };
         if let Some(spline) = self.spline {
-            spline.knots().iter().zip(spline.bends()).for_each(|(roll, bend)| put(*roll, bend));
+            spline.visit_bends(put);
             return Some(());
         }
         for roll in self.parts.iter().flat_map(Section::knots) {
@@ -39,11 +40,17 @@ impl Outline<'_> {
             return Some(least);
         }
         let (from, to) = (self.facing.start, self.facing.end);
+        let [at_zero, rate] = self.rolls;
+        // Parts in a roll angle, and the first one's begin.
         let per_part = PARTS as f64 / (to - from);
-        self.visit_bends(|position, bend| {
+        let (per_roll, begin) = (per_part / rate, at_zero + rate * from);
+        self.visit_bends(|roll, bend| {
+            if bend >= 0.0 {
+                return;
+            }
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a share
-            let part = (((position - from) * per_part) as usize).min(PARTS - 1);
-            least[part] = least[part].min(bend);
+            let part = (((roll - begin) * per_roll) as u32 as usize).min(PARTS - 1);
+            least[part] = if bend < least[part] { bend } else { least[part] };
         })?;
         Some(least)
     }
@@ -51,12 +58,12 @@ impl Outline<'_> {
     /// On how many stretches it bends back by more than that \[1/m\], which begin a part of the path from each other: what rings about a kink is
     /// one. None where a part of it does not know its own.
     pub(in super::super) fn crests(&self, most: f64) -> usize {
-        let apart = (self.facing.end - self.facing.start) / PARTS as f64;
+        let apart = self.rolls[1].abs() * (self.facing.end - self.facing.start) / PARTS as f64;
         let (mut crests, mut on_crest, mut last) = (0, false, f64::INFINITY);
-        let known = self.visit_bends(|position, bend| {
+        let known = self.visit_bends(|roll, bend| {
             let bends_back = bend < -most;
-            if bends_back && !on_crest && (position - last).abs() > apart {
-                (crests, last) = (crests + 1, position);
+            if bends_back && !on_crest && (roll - last).abs() > apart {
+                (crests, last) = (crests + 1, roll);
             }
             on_crest = bends_back;
         });
@@ -118,13 +125,17 @@ impl Outline<'_> {
         [self.facing.start, self.facing.end]
     }
 
-    /// The depths at so many places in equal steps, beyond its ends those at its ends.
-    pub(in super::super) fn depths(&self, [first, step]: [f64; 2], count: usize) -> Vec<f64> {
+    /// The depths at so many places in equal steps along the flank of a gear with this base radius, counted from its base circle; beyond its
+    /// ends those at its ends.
+    #[allow(clippy::cast_possible_truncation)] // of single precision
+    pub(in super::super) fn depths(&self, base_radius: f64, [first, step]: [f64; 2], count: usize) -> Vec<f32> {
+        // Half the square of the roll angle times the base radius is the length.
+        let per_length = 2.0 / base_radius;
         if let (Some(spline), false) = (self.spline, self.is_point) {
-            let [_, rate] = self.rolls;
-            return spline.equidistant([self.roll(first), step * rate], count);
+            return spline.at_roots([first * per_length, step * per_length], count);
         }
         let [from, to] = self.range();
-        (0..count).map(|at| self.depth((first + step * at as f64).clamp(from, to))).collect()
+        let place = |at: usize| base_radius * (per_length * (first + step * at as f64)).max(0.0).sqrt();
+        (0..count).map(|at| self.depth(place(at).clamp(from, to)) as f32).collect()
     }
 }

@@ -1,118 +1,91 @@
-//! What a flank has lost at equidistant places along it.
+//! What a flank has lost at places in equal steps along it.
 //!
-//! Must not know: the other flank.
+//! Depths are of single precision: of 100 µm that is 4 pm. Must not know: the other flank.
 
 use super::super::outline::Outline;
 
-/// Places that are looked at together.
-pub(super) const BLOCK: usize = 8;
-/// Half as much again as 2⁵²: what is added to it is rounded to a whole number, which is in its last bits.
-const WHOLE: f64 = 6_755_399_441_055_744.0;
+/// Places that are looked at together, with one more on either side.
+pub(super) const LANES: usize = 16;
+pub(super) const BLOCK: usize = LANES - 2;
+/// Places of which it is known together how deep they are.
+pub(super) const TOGETHER: usize = 8;
+/// What waves fall by between their places, over that of a parabola, with its eighth.
+const STEEPER: f32 = 1.6 / 8.0;
+/// Places more on either side: those of one flank lie beside those of the other.
+const BESIDE: usize = LANES + 4;
 
-/// Depths over roll lengths, in blocks of places, of which one lies before the flank and two behind it.
+/// Depths over the length along the flank from its base circle.
 #[derive(Clone, Debug)]
 pub(super) struct Depths {
-    /// The flank's own ends.
-    pub(super) range: [f64; 2],
-    first: f64,
-    step: f64,
-    per_step: f64,
-    /// The depth at each place, and by how much it grows up to the next one.
-    places: Vec<[f64; 2]>,
-    /// Of each block the least depth, up to the first place of the next one, and what the lower hull of those is there.
-    blocks: Vec<[f64; 2]>,
+    /// Where its first place is \[m\].
+    pub(super) first: f64,
+    /// The distance of places, below 0 where they are counted towards the root \[m\].
+    pub(super) step: f64,
+    places: Vec<f32>,
+    /// A quarter of the second difference at each place.
+    bends: Vec<f32>,
+    /// By how much it is lower between a place that is lower than both beside it and those.
+    dips: Vec<f32>,
 }
 
 impl Depths {
-    /// In steps of this length.
-    pub(super) fn new(flank: &Outline, step: f64) -> Self {
-        let range = flank.range();
+    /// Between two lengths in steps of this one, towards the tip where it is above 0 and else from there; beyond the ends of the flank what it has lost
+    /// there. `flank` is over its own roll length.
+    pub(super) fn new(flank: &Outline, base_radius: f64, [from, to]: [f64; 2], step: f64) -> Self {
+        let length = step.abs();
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // not below 1
-        let count = ((range[1] - range[0]) / step).ceil() as usize;
-        let blocks = count / BLOCK + 4;
-        let first = range[0] - step * BLOCK as f64;
-        let depths = flank.depths([first, step], blocks * BLOCK + 1);
-        let mut places = Vec::with_capacity(depths.len());
-        for ends in depths.windows(2) {
-            places.push([ends[0], ends[1] - ends[0]]);
+        let count = ((to - from) / length).ceil() as usize + 2 * BESIDE;
+        let lowest = from - length * BESIDE as f64;
+        let mut places = flank.depths(base_radius, [lowest, length], count);
+        let first = if step > 0.0 { lowest } else { lowest + length * (count - 1) as f64 };
+        if step < 0.0 {
+            places.reverse();
         }
-        let least = |block: usize| {
-            let of_block = &depths[block * BLOCK..=block * BLOCK + BLOCK];
-            of_block.iter().fold(f64::INFINITY, |least, depth| if *depth < least { *depth } else { least })
-        };
-        let mut blocks: Vec<[f64; 2]> = (0..blocks).map(|block| [least(block); 2]).collect();
-        lower_hull(&mut blocks);
-        Self { range, first, step, per_step: 1.0 / step, places, blocks }
-    }
-
-    /// The number of a place, with its share of the way to the next one.
-    #[inline]
-    pub(super) fn number(&self, place: f64) -> f64 {
-        (place - self.first) * self.per_step
-    }
-
-    #[inline]
-    pub(super) fn place(&self, number: f64) -> f64 {
-        self.first + self.step * number
-    }
-
-    /// The depths from one place on, and by how much each grows.
-    #[inline]
-    pub(super) fn from(&self, number: usize) -> &[[f64; 2]] {
-        &self.places[number..]
-    }
-
-    /// The depth on the line between two places.
-    #[inline]
-    pub(super) fn between(&self, number: f64) -> f64 {
-        let whole = number + (WHOLE - 0.5);
-        let at = low_bits(whole);
-        if at >= self.places.len() {
-            return f64::INFINITY;
+        let (mut bends, mut dips) = (vec![0.0; count], vec![0.0; count]);
+        let (before, behind) = (&places[..count - 2], &places[2..]);
+        let both = bends[1..count - 1].iter_mut().zip(&mut dips[1..count - 1]);
+        for (((bend, dip), here), (before, behind)) in both.zip(&places[1..]).zip(before.iter().zip(behind)) {
+            let (fall, rise) = (before - here, behind - here);
+            *bend = 0.25 * (fall + rise);
+            // The parabola through the three is lower by an eighth of the square of what they rise by over what they bend by.
+            let deep = STEEPER * (rise - fall) * (rise - fall) / (fall + rise);
+            let least = if fall < rise { fall } else { rise };
+            *dip = if least > 0.0 { deep } else { 0.0 };
         }
-        let [depth, rise] = self.places[at];
-        depth + rise * (number - (whole - WHOLE))
+        Self { first, step, places, bends, dips }
     }
 
-    /// The least depth of a block, and what the hull of all such is there; without bound where there is none.
-    #[inline]
-    pub(super) fn least_of(&self, block: usize) -> [f64; 2] {
-        if block < self.blocks.len() { self.blocks[block] } else { [f64::INFINITY; 2] }
-    }
-}
-
-/// The block of the number of a place.
-#[inline]
-pub(super) fn block(number: f64) -> usize {
-    low_bits((if number > 0.5 { number } else { 0.5 }) + (WHOLE - 0.5)) / BLOCK
-}
-
-/// The whole number that is in the last bits.
-#[inline]
-#[allow(clippy::cast_possible_truncation)] // they are 32
-fn low_bits(whole: f64) -> usize {
-    whole.to_bits() as u32 as usize
-}
-
-/// Puts the lower convex hull of the first value of each into the second one.
-fn lower_hull(values: &mut [[f64; 2]]) {
-    let mut hull: Vec<usize> = Vec::with_capacity(values.len());
-    for next in 0..values.len() {
-        while let [.., one, other] = hull[..] {
-            let rise = |from: usize, to: usize| values[to][0] - values[from][0];
-            // Below the line from `one` to `next`.
-            if rise(one, other) * (next - one) as f64 <= rise(one, next) * (other - one) as f64 {
-                break;
+    /// What depths are no less than, of so many places after so many with those between them and the next ones.
+    pub(super) fn least(&self) -> impl Iterator<Item = f32> {
+        let groups = self.places.chunks_exact(TOGETHER).zip(self.dips.chunks_exact(TOGETHER));
+        groups.map(|(places, dips)| {
+            let mut least = [f32::INFINITY; 4];
+            for at in 0..TOGETHER {
+                let depth = places[at] - dips[at];
+                least[at % 4] = if depth < least[at % 4] { depth } else { least[at % 4] };
             }
-            hull.pop();
-        }
-        hull.push(next);
+            least.into_iter().fold(f32::INFINITY, |one, other| if one < other { one } else { other })
+        })
     }
-    for ends in hull.windows(2) {
-        let [from, to] = [ends[0], ends[1]];
-        let slope = (values[to][0] - values[from][0]) / (to - from) as f64;
-        for at in from + 1..to {
-            values[at][1] = values[from][0] + slope * (at - from) as f64;
-        }
+
+    pub(super) fn count(&self) -> usize {
+        self.places.len()
     }
+
+    /// The depths from one place on.
+    #[inline]
+    pub(super) fn from(&self, number: usize) -> &[f32; LANES + 1] {
+        self.places[number..].first_chunk().expect("there are places on either side")
+    }
+
+    /// A quarter of their second differences.
+    #[inline]
+    pub(super) fn bends_from(&self, number: usize) -> &[f32; LANES + 1] {
+        self.bends[number..].first_chunk().expect("there are places on either side")
+    }
+}
+
+/// How long an involute is from its base circle to where its roll length is this one.
+pub(super) fn along(roll_length: f64, base_radius: f64) -> f64 {
+    0.5 * roll_length * roll_length / base_radius
 }

@@ -1,194 +1,285 @@
 //! Places beside the nominal point of contact, and the gap there, as a scan needs it.
 //!
-//! Contact moves by the same length along both flanks, so that f²/2r + q²/2r′ stays as it is, f and q being their radii of curvature, r and
-//! r′ the base radii. The angle between the flanks is then (f − s)/r + (T − s − q)/r′, and the separation S its integral along them:
-//! both to the second order in that angle. As S is a turn of the flank before the point, its roll length is longer by S: that of
-//! the two which grows. The flank whose roll length changes faster leads, in equal steps. Must not know: how places are followed.
+//! Contact moves by the same length along both flanks: their lengths from the base circles, f²/2r and q²/2r′ with the radii of curvature
+//! f and q and the base radii r and r′, add up to what they do at the nominal point s. Places in equal steps along one are therefore in
+//! equal steps along the other. The angle between the flanks is (f − s)/r + (T − s − q)/r′, and the separation S its integral along them:
+//! both to the second order in that angle. Must not know: how places are followed.
 
-use super::depths::{BLOCK, Depths, block as block_of};
-use crate::gear::contact::separation::Touch;
+use super::super::outline::Outline;
+use super::depths::{Depths, LANES};
+use super::hull::Hull;
 
-/// The places of a block, with one more on either side.
-pub(super) const WITH_NEIGHBOURS: usize = BLOCK + 2;
+/// What makes numbers of places positive, whose fractions are wanted: the most places of all.
+const POSITIVE: usize = 1 << 20;
 
-/// Those places, counted from where the block begins.
-const NUMBERS: [f64; WITH_NEIGHBOURS] = [-1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
+/// The places of a block with their neighbours.
+const PLACES: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0];
+
+/// Both flanks on a stretch of the path.
+#[derive(Clone, Debug)]
+pub(super) struct Flanks {
+    /// Of the pinion from its root, and of the gear from its tip.
+    pub(super) depths: [Depths; 2],
+    /// The distance of places \[m\].
+    pub(super) step: f64,
+}
+
+impl Flanks {
+    /// Between these lengths along each flank, which are over their own roll lengths.
+    pub(super) fn new(outlines: [&Outline; 2], base_radii: [f64; 2], lengths: [[f64; 2]; 2], step: f64) -> Self {
+        let steps = [step, -step];
+        Self { depths: [0, 1].map(|at| Depths::new(outlines[at], base_radii[at], lengths[at], steps[at])), step }
+    }
+}
+
+/// What all scans of two flanks have in common.
+#[derive(Clone, Debug)]
+pub(super) struct Pair {
+    pub(super) base_radii: [f64; 2],
+    /// Between which lengths from its base circle each flank has points.
+    pub(super) ranges: [[f64; 2]; 2],
+    /// What depths are no less than, over those lengths.
+    pub(super) hulls: [Hull; 2],
+}
 
 /// Both flanks at one path position.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scan<'a> {
-    leads: &'a Depths,
-    follows: &'a Depths,
-    /// Which gear leads.
-    leading: usize,
-    /// Roll lengths at the nominal point of which both leads and follows.
+    pair: &'a Pair,
+    flanks: &'a Flanks,
+    /// Roll lengths at the nominal point.
     nominal: [f64; 2],
-    /// What the square of one roll length loses when that of the other grows, and the sum that stays.
-    ratio: f64,
+    /// What both lengths along the flanks add up to.
     sum: f64,
-    /// The separation, of the squares and the third powers of the distances from the nominal roll lengths.
-    squares: [f64; 2],
-    cubes: [f64; 2],
-    /// Beyond the ends of contact, far from the nominal point: what roll length of what follows and separation are more.
-    more: [f64; 2],
-    /// Between which roll lengths of the one that leads both flanks have points, and between which numbers of places.
+    /// By how many places that of the gear is ahead of the pinion's, and by which share of a step more.
+    ahead: isize,
+    share: f32,
+    /// For the separation at places: of each flank how the square of the roll length grows in a step, the nominal roll length, and what counts
+    /// for the square and the third power of the distance from it; and beyond the ends of contact what it is more.
+    turns: [[f32; 4]; 2],
+    more: f32,
+    /// The separation for which places are beside each other, by what length those of the pinion are farther for that, and by how many steps
+    /// roll lengths grow for what it is more.
+    aligned: f32,
+    shift: f64,
+    growths: [f32; 2],
+    /// Between which lengths along the pinion's flank both flanks have points, and between which numbers of places.
     pub(super) range: [f64; 2],
-    numbers: [f64; 2],
-}
-
-/// Where a block begins or ends.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Edge {
-    /// The block of what follows, and the number of the place.
-    block: usize,
-    number: f64,
-    /// The separation, and the gap.
-    apart: f64,
-    gap: f64,
+    pub(super) numbers: [f64; 2],
 }
 
 impl<'a> Scan<'a> {
-    /// `own` are the roll lengths of pinion and gear at the nominal point; beyond the ends of contact `end` is where the end of one flank
-    /// is nearest to the other one, which is that of this gear. None where the flanks have no place in common.
-    pub(super) fn new(
-        depths: &'a [Depths; 2],
-        base_radii: [f64; 2],
-        own: [f64; 2],
-        end: Option<(usize, Touch)>,
-    ) -> Option<Self> {
-        let leading = usize::from(own[0] * base_radii[1] > own[1] * base_radii[0]);
-        let following = 1 - leading;
-        let (leads, follows) = (&depths[leading], &depths[following]);
-        let (radius, other) = (base_radii[leading], base_radii[following]);
-        let nominal = [own[leading], own[following]];
-        let ratio = other / radius;
-        let sum = nominal[1] * nominal[1] + ratio * nominal[0] * nominal[0];
-        let against = |follows: f64| root((sum - follows * follows) / ratio);
-        let mut range =
-            [larger(leads.range[0], against(follows.range[1])), smaller(leads.range[1], against(follows.range[0]))];
-        let (mut squares, mut cubes) = ([0.0; 2], [0.0; 2]);
-        for (at, radius) in [radius, other].into_iter().enumerate() {
-            let per_square = 1.0 / (radius * radius);
-            (squares[at], cubes[at]) = (0.5 * nominal[at] * per_square, per_square / 3.0);
-        }
-        let known = end.map(|(flank, touch)| {
-            let tip = depths[1 - flank].range[1];
-            let (leads, follows) = if flank == leading { (touch.curvature, tip) } else { (tip, touch.curvature) };
-            range[usize::from(nominal[0] > leads)] = leads;
-            (leads, follows, touch.separation)
-        });
-        if range[0] > range[1] {
+    /// `nominal` are the roll lengths of pinion and gear at the nominal point. None where the flanks have no place in common.
+    #[inline]
+    pub(super) fn new(pair: &'a Pair, flanks: &'a Flanks, nominal: [f64; 2]) -> Option<Self> {
+        let Pair { base_radii, ranges: [pinion, gear], .. } = pair;
+        let step = flanks.step;
+        let per_step = 1.0 / step;
+        let per_radius = base_radii.map(|radius| 1.0 / radius);
+        let per_square = per_radius.map(|per| per * per);
+        let along = |at: usize| 0.5 * nominal[at] * nominal[at] * per_radius[at];
+        let mut scan = Self {
+            pair,
+            flanks,
+            nominal,
+            sum: along(0) + along(1),
+            ahead: 0,
+            share: 0.0,
+            turns: [0, 1].map(|at| {
+                let growth = if at == 0 { 2.0 } else { -2.0 } * base_radii[at] * step;
+                let [square, cube] = [0.5 * nominal[at] * per_square[at], per_square[at] * (1.0 / 3.0)];
+                [growth, nominal[at], square, cube].map(single)
+            }),
+            more: 0.0,
+            aligned: 0.0,
+            shift: 0.0,
+            growths: [0, 1].map(|at| single(nominal[at] * per_radius[at] * per_step)),
+            range: [0.0; 2],
+            numbers: [0.0; 2],
+        };
+        let sum = scan.sum;
+        scan.range = [larger(pinion[0], sum - gear[1]), smaller(pinion[1], sum - gear[0])];
+        if scan.range[0] > scan.range[1] {
             return None;
         }
-        let numbers = [leads.number(range[0]), leads.number(range[1])];
-        let more = [0.0; 2];
-        let mut scan = Self { leads, follows, leading, nominal, ratio, sum, squares, cubes, more, range, numbers };
-        if let Some((leads, follows, separation)) = known {
-            let [near, apart] = scan.opposite(leads);
-            scan.more = [follows - near, separation - apart];
-        }
+        scan.align(sum);
         Some(scan)
     }
 
-    /// The first and the last block of places.
-    pub(super) fn blocks(&self) -> [usize; 2] {
-        let [first, last] = self.range;
-        [first, last].map(|end| block_of(self.leads.number(end)))
-    }
-
-    /// The block of the nominal point.
-    pub(super) fn nearest_block(&self) -> usize {
-        block_of(self.leads.number(self.nominal[0]))
-    }
-
-    /// The roll length of what follows, if the flanks did not stand apart.
+    /// Lays places of both flanks beside each other whose lengths add up to this.
     #[inline]
-    fn following(&self, leads: f64) -> f64 {
-        root(self.sum - self.ratio * leads * leads)
+    fn align(&mut self, sum: f64) {
+        let Flanks { depths: [pinion, gear], step } = self.flanks;
+        let ahead = (pinion.first + gear.first - sum) / step + POSITIVE as f64;
+        let whole = positive(ahead);
+        (self.ahead, self.share) = (whole.cast_signed() - POSITIVE.cast_signed(), single(ahead - whole as f64));
+        self.numbers = self.range.map(|place| self.number(place));
     }
 
-    /// The roll length of what follows, and the separation.
+    /// The number of the nominal point.
     #[inline]
-    fn opposite(&self, leads: f64) -> [f64; 2] {
-        let follows = self.following(leads);
-        let (one, other) = (leads - self.nominal[0], follows - self.nominal[1]);
-        let apart = one * one * (self.squares[0] + self.cubes[0] * one)
-            + other * other * (self.squares[1] + self.cubes[1] * other)
-            + self.more[1];
-        // What grows of both roll lengths is longer by the separation.
-        let growth = if one > 0.0 { self.ratio * leads / larger(follows, f64::MIN_POSITIVE) } else { 1.0 };
-        [follows + growth * apart + self.more[0], apart]
+    pub(super) fn nominal(&self) -> f64 {
+        let [radius, _] = self.pair.base_radii;
+        self.number(0.5 * self.nominal[0] * self.nominal[0] / radius)
     }
 
-    /// Where a block begins.
+    /// The first and the last place that both flanks have depths of, and a block with one more on either side.
     #[inline]
-    pub(super) fn edge(&self, block: usize) -> Edge {
-        let [follows, apart] = self.opposite(self.leads.place((block * BLOCK) as f64));
-        let number = self.follows.number(follows);
-        let gap = apart + self.leads.from(block * BLOCK)[0][0] + self.follows.between(number);
-        Edge { block: block_of(number), number, apart, gap }
+    pub(super) fn known(&self) -> [isize; 2] {
+        let [pinion, gear] =
+            self.flanks.depths.each_ref().map(|depths| depths.count().cast_signed() - LANES.cast_signed());
+        [1.max(1 - self.ahead), (pinion - 1).min(gear - 1 - self.ahead)]
     }
 
-    /// What the gap is not less than in a block, one edge of which is nearer to the nominal point, and what the lower hulls of both flanks
-    /// make of it. It falls from one edge to the other by no more than `dip` below both.
+    /// Roll lengths of pinion and gear at a length along the pinion's flank, and whether that of the pinion has grown.
     #[inline]
-    pub(super) fn at_least(&self, block: usize, near: &Edge, far: &Edge, dip: f64) -> [f64; 2] {
-        let ([one, one_hull], [other, other_hull]) =
-            (self.follows.least_of(near.block), self.follows.least_of(far.block));
-        let [least, hull] = self.leads.least_of(block);
-        let least = larger(near.apart + least + smaller(one, other), smaller(near.gap, far.gap) - dip);
-        [least, near.apart + hull + smaller(one_hull, other_hull)]
+    pub(super) fn roll_lengths(&self, place: f64) -> ([f64; 2], bool) {
+        let [pinion, gear] = self.pair.base_radii;
+        let roll_lengths = [root(2.0 * pinion * place), root(2.0 * gear * (self.sum - place))];
+        (roll_lengths, roll_lengths[0] >= self.nominal[0])
     }
 
-    /// The gap at all places of a block between these edges, with one more on either side; without bound where both flanks have none.
-    pub(super) fn values(&self, block: usize, [from, to]: [&Edge; 2]) -> [f64; WITH_NEIGHBOURS] {
-        let first = block * BLOCK - 1;
-        let [middle, apart] = self.opposite(self.leads.place((block * BLOCK + BLOCK / 2) as f64));
-        let middle = self.follows.number(middle);
-        // Parabolas: what is of third order over so short a way is less than rounding of the depths.
-        let apart = parabola([from.apart, apart, to.apart]);
-        let numbers = parabola([from.number, middle, to.number]);
-        let (mut values, mut places) = ([0.0; WITH_NEIGHBOURS], [0.0; WITH_NEIGHBOURS]);
-        for (at, (value, place)) in values.iter_mut().zip(&mut places).enumerate() {
-            let along = NUMBERS[at];
-            *value = apart[0] + along * (apart[1] + along * apart[2]);
-            *place = numbers[0] + along * (numbers[1] + along * numbers[2]);
+    /// Counts the separation, and by how much the roll length of the flank that is met is more, from what they are at these roll lengths, which
+    /// are far from the nominal ones.
+    pub(super) fn count_from(&mut self, roll_lengths: [f64; 2], separation: f64, met: [f64; 2]) {
+        let [pinion, gear] = [0, 1].map(|at| {
+            let [_, _, square, cube] = self.turns[at].map(f64::from);
+            let off = roll_lengths[at] - self.nominal[at];
+            off * off * (square + cube * off)
+        });
+        self.more = single(separation - pinion - gear);
+        let along = |at: usize, roll_length: f64| 0.5 * roll_length * roll_length / self.pair.base_radii[at];
+        self.shift = along(0, met[0]) - along(0, roll_lengths[0]);
+        let sum = along(0, met[0]) + along(1, met[1]);
+        // Both have points at the places that lie beside each other now.
+        let [pinion, gear] = self.pair.ranges;
+        self.range = [
+            larger(self.range[0], larger(pinion[0], sum - gear[1]) - self.shift),
+            smaller(self.range[1], smaller(pinion[1], sum - gear[0]) - self.shift),
+        ];
+        self.align(sum);
+        self.aligned = single(separation);
+    }
+
+    /// How far the flanks stand apart at places from this one on, and by how much the roll length of the pinion's has grown.
+    #[inline]
+    fn separations(&self, first: isize) -> [[f32; LANES]; 2] {
+        let [pinion, gear] = self.pair.base_radii;
+        let place = self.at(first as f64);
+        // In single precision, in which roll lengths are known to a nanometre, and separations to a picometre.
+        let squares = [2.0 * pinion * place, 2.0 * gear * (self.sum - place)].map(single);
+        let (mut apart, mut grown) = ([0.0; LANES], [0.0; LANES]);
+        for (at, steps) in PLACES.into_iter().enumerate() {
+            let ([one, off], [other, _]) =
+                (part(squares[0], self.turns[0], steps), part(squares[1], self.turns[1], steps));
+            (apart[at], grown[at]) = (one + other + self.more, off);
         }
-        let depths = &self.leads.from(first)[..WITH_NEIGHBOURS];
-        for ((value, place), depth) in values.iter_mut().zip(places).zip(depths) {
-            *value += depth[0] + self.follows.between(place);
+        [apart, grown]
+    }
+
+    /// The gap at places from this one on, and how far the flanks stand apart there; without bound where both flanks have none.
+    #[inline]
+    pub(super) fn values(&self, first: isize) -> [[f32; LANES]; 2] {
+        let [pinion, gear] = &self.flanks.depths;
+        let number = first.cast_unsigned();
+        let ahead = number.wrapping_add_signed(self.ahead);
+        let (pinion, bends, gear) = (pinion.from(number), gear.bends_from(ahead), gear.from(ahead));
+        let [apart, grown] = self.separations(first);
+        let mut values = apart;
+        let share = self.share;
+        // A quarter of the second differences at both is what a cubic about falls by between two places.
+        let fall = share * (share - 1.0);
+        for at in 0..LANES {
+            values[at] +=
+                pinion[at] + (gear[at] + share * (gear[at + 1] - gear[at]) + fall * (bends[at] + bends[at + 1]));
         }
-        let [low, high] = [self.numbers[0] - first as f64, self.numbers[1] - first as f64];
-        if low > 0.0 || high < (WITH_NEIGHBOURS - 1) as f64 {
-            for (at, value) in values.iter_mut().enumerate() {
-                if (at as f64) < low || (at as f64) > high {
-                    *value = f64::INFINITY;
+        // The roll length that grows is longer by the separation. Loops of one kind each, which then are of whole vectors.
+        let (mut ahead, mut up, mut down) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for at in 0..LANES {
+            ahead[at] = if grown[at] > 0.0 { self.growths[0] } else { 0.0 };
+        }
+        for at in 0..LANES {
+            up[at] = ahead[at] * (pinion[at + 1] - pinion[at]);
+        }
+        for at in 0..LANES {
+            ahead[at] = if grown[at] > 0.0 { 0.0 } else { self.growths[1] };
+        }
+        for at in 0..LANES {
+            down[at] = ahead[at] * (gear[at] - gear[at + 1]);
+        }
+        for at in 0..LANES {
+            values[at] += (apart[at] - self.aligned) * (up[at] + down[at]);
+        }
+        let [low, high] = self.numbers;
+        if low > first as f64 || high < (first + LANES.cast_signed()) as f64 {
+            for (value, number) in values.iter_mut().zip(first..) {
+                if (number as f64) < low || number as f64 > high {
+                    *value = f32::INFINITY;
                 }
             }
         }
-        values
+        [values, apart]
     }
 
-    /// Which way off the line of action a place is, of the gear's points before the pinion's flank or the reverse, and how far.
-    pub(super) fn place(&self, leads: f64) -> (usize, f64) {
-        let leads = leads.clamp(self.range[0], self.range[1]);
-        let ahead = [leads - self.nominal[0], self.opposite(leads)[0] - self.nominal[1]];
-        let [pinion, gear] = [ahead[self.leading], ahead[1 - self.leading]];
-        if pinion >= 0.0 { (0, larger(-gear, 0.0)) } else { (1, -pinion) }
+    /// What the gap is no less than before the first place of a block or behind its last one, where flanks stand apart so far in the block and beside it.
+    #[inline]
+    pub(super) fn least_before(&self, first: isize, apart: &[f32; LANES]) -> f32 {
+        self.least_from(first, [apart[1], apart[2]], -1.0)
     }
 
-    /// The roll length at a number of a place.
+    #[inline]
+    pub(super) fn least_behind(&self, last: isize, apart: &[f32; LANES]) -> f32 {
+        self.least_from(last, [apart[LANES - 2], apart[LANES - 3]], 1.0)
+    }
+
+    /// From a place on, where they stand apart by these at it and at the one before; without bound where it may be any less.
+    #[inline]
+    fn least_from(&self, number: isize, [apart, before]: [f32; 2], way: f32) -> f32 {
+        let [pinion, gear] = &self.flanks.depths;
+        let step = self.flanks.step;
+        let [own, other] = &self.pair.hulls;
+        let [own, grows] = own.at(pinion.first + step * number as f64);
+        let [other, falls] = other.at(gear.first - step * ((number + self.ahead) as f64 + f64::from(self.share)));
+        let along = way * single(step) * (grows - falls);
+        if apart - before + along < 0.0 { f32::NEG_INFINITY } else { apart + own + other }
+    }
+
+    /// The distance of places.
+    pub(super) fn step(&self) -> f64 {
+        self.flanks.step
+    }
+
+    /// The length along the pinion's flank at a number of a place.
+    #[inline]
     pub(super) fn at(&self, number: f64) -> f64 {
-        self.leads.place(number)
+        self.flanks.depths[0].first + self.flanks.step * number - self.shift
+    }
+
+    #[inline]
+    fn number(&self, place: f64) -> f64 {
+        (place + self.shift - self.flanks.depths[0].first) / self.flanks.step
     }
 }
 
-/// The coefficients of the parabola through values at both ends and in the middle of a block, against the number of the place in it.
+/// What one flank turns by, and how much longer its roll length is, from the square of that at a place and as in [`Scan`].
 #[inline]
-fn parabola([from, middle, to]: [f64; 3]) -> [f64; 3] {
-    const HALF: f64 = 0.5 * BLOCK as f64;
-    let bend = (from - 2.0 * middle + to) / (2.0 * HALF * HALF);
-    [from, (to - from) / (2.0 * HALF) - 2.0 * HALF * bend, bend]
+fn part(square: f32, [growth, nominal, squares, cubes]: [f32; 4], steps: f32) -> [f32; 2] {
+    let square = square + growth * steps;
+    let off = (if square > 0.0 { square } else { 0.0 }).sqrt() - nominal;
+    [off * off * (squares + cubes * off), off]
+}
+
+#[inline]
+#[allow(clippy::cast_possible_truncation)] // lengths of gears
+pub(super) fn single(value: f64) -> f32 {
+    value as f32
+}
+
+/// The whole part; of what is below 0 that is 0.
+#[inline]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+pub(super) fn positive(number: f64) -> usize {
+    number as u32 as usize
 }
 
 /// As these are one instruction.
