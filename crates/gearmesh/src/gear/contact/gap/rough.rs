@@ -9,9 +9,8 @@ use super::{Way, pulled};
 use crate::gear::geometry::GearPair;
 use depths::{BLOCK, LANES};
 use hull::Hull;
-use near::{Here, NEAR, Near};
+use near::{NEAR, Near};
 use scan::{Flanks, Pair, Scan, positive, single};
-use std::sync::OnceLock;
 use steps::{Need, Steps};
 
 mod depths;
@@ -45,8 +44,6 @@ pub(super) struct Rough {
     pair: Pair,
     /// Tables of both flanks, each for parts of the path that want the same steps.
     stretches: Vec<Flanks>,
-    /// The same beyond A and behind E, of both flanks as a whole: what is looked for there may lie anywhere on one of them, and mostly nothing is.
-    beyond: [OnceLock<Flanks>; 2],
     tangent_length: f64,
     /// Where parts of the path begin, and how many there are in a length.
     from: f64,
@@ -91,7 +88,7 @@ impl Rough {
         let finest = needs.iter().map(|need| need.step).fold(f64::INFINITY, f64::min);
         for (part, need) in parts.iter_mut().zip(needs) {
             // Parts beside each other have one table, unless one of them can do with half as many places.
-            let step = finest * (need.step / finest).log2().floor().exp2();
+            let step = finest * libm::exp2(libm::log2(need.step / finest).floor());
             match wanted.last_mut() {
                 Some(last) if last.step.total_cmp(&step).is_eq() => last.widen(&need.lengths),
                 _ => wanted.push(Need { step, ..need }),
@@ -114,7 +111,6 @@ impl Rough {
         Self {
             pair: Pair { base_radii: steps.base_radii, ranges: steps.ranges, hulls },
             stretches,
-            beyond: [OnceLock::new(), OnceLock::new()],
             tangent_length: pair.tangent_length,
             from,
             per_length: PARTS as f64 / (to - from),
@@ -127,21 +123,17 @@ impl Rough {
     pub(super) fn least(&self, ways: &[Way; 2], s: f64, gap: f64) -> f64 {
         let part = self.parts[positive((s - self.from) * self.per_length).min(PARTS - 1)];
         let nominal = [s, self.tangent_length - s];
-        let mut flanks = &self.stretches[part.stretch];
-        let beyond = ways.iter().position(|way| way.facing.start > way.facing.turned(way.side, s));
-        if let Some(end) = beyond {
-            let Pair { base_radii, ranges, .. } = self.pair;
-            let step = flanks.step;
-            flanks = self.beyond[end]
-                .get_or_init(|| Flanks::new([&ways[0].flank, &ways[1].flank], base_radii, ranges, step));
-        }
+        let flanks = &self.stretches[part.stretch];
         let Some(mut scan) = Scan::new(&self.pair, flanks, nominal) else { return gap };
         let near = Near { ways, base_radii: self.pair.base_radii, nominal };
-        // Beyond an end of contact, where the end of one flank is nearest to the other one.
-        if let Some(end) = beyond {
+        // Beyond an end of contact, where the end of one flank is nearest to the other one: anywhere on that, so that places are told there only.
+        let beside;
+        if let Some(end) = ways.iter().position(|way| way.facing.start > way.facing.turned(way.side, s)) {
             let (roll_lengths, is_ahead) = scan.roll_lengths(scan.range[end]);
-            let Here { apart, met, .. } = near.at(roll_lengths, is_ahead);
-            scan.count_from(roll_lengths, apart, met);
+            let here = near.at(roll_lengths, is_ahead);
+            beside = self.pair.beside([&ways[0].flank, &ways[1].flank], [roll_lengths, here.met], &here, flanks.step);
+            scan = scan.on(&beside);
+            scan.count_from(roll_lengths, here.apart, here.met);
             if scan.range[0] > scan.range[1] {
                 return gap;
             }

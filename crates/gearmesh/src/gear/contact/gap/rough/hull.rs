@@ -39,6 +39,11 @@ impl Hull {
         Self { first: from, per_length, values }
     }
 
+    /// The least value of all.
+    pub(super) fn least(&self) -> f32 {
+        self.values.iter().map(|value| value[0]).fold(f32::INFINITY, f32::min)
+    }
+
     /// The value at a length along the flank, and its slope.
     #[inline]
     pub(super) fn at(&self, place: f64) -> [f32; 2] {

@@ -6,8 +6,10 @@
 //! both to the second order in that angle. Must not know: how places are followed.
 
 use super::super::outline::Outline;
-use super::depths::{Depths, LANES};
+use super::depths::{Depths, LANES, along};
 use super::hull::Hull;
+use super::near::Here;
+use super::steps::reach;
 
 /// What makes numbers of places positive, whose fractions are wanted: the most places of all.
 const POSITIVE: usize = 1 << 20;
@@ -40,6 +42,23 @@ pub(super) struct Pair {
     pub(super) ranges: [[f64; 2]; 2],
     /// What depths are no less than, over those lengths.
     pub(super) hulls: [Hull; 2],
+}
+
+impl Pair {
+    /// Tables about roll lengths at which both flanks are nearest to each other, as far as anything there may be lower.
+    pub(super) fn beside(&self, outlines: [&Outline; 2], met: [[f64; 2]; 2], here: &Here, step: f64) -> Flanks {
+        let [pinion, gear] = &self.hulls;
+        // Farther along both they stand apart by as much more as if they touched here, or by more than that.
+        let lower = here.rates[0] - here.apart - f64::from(pinion.least()) - f64::from(gear.least());
+        let [down, up] = reach(self.base_radii, met[0], lower.max(0.0));
+        let lengths = [0, 1].map(|at| {
+            let [one, other] = met.map(|roll_lengths| along(roll_lengths[at], self.base_radii[at]));
+            let farther = if at == 0 { [down, up] } else { [up, down] };
+            let [least, most] = self.ranges[at];
+            [(one.min(other) - farther[0]).clamp(least, most), (one.max(other) + farther[1]).clamp(least, most)]
+        });
+        Flanks::new(outlines, self.base_radii, lengths, step)
+    }
 }
 
 /// Both flanks at one path position.
@@ -104,6 +123,14 @@ impl<'a> Scan<'a> {
         }
         scan.align(sum);
         Some(scan)
+    }
+
+    /// The same on other tables.
+    pub(super) fn on<'b>(self, flanks: &'b Flanks) -> Scan<'b>
+    where
+        'a: 'b,
+    {
+        Scan { flanks, ..self }
     }
 
     /// Lays places of both flanks beside each other whose lengths add up to this.

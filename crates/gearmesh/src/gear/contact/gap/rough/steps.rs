@@ -136,7 +136,8 @@ impl Steps {
         let mut lengths = self.ranges;
         for _ in 0..NARROWER {
             let least = self.cells[0].between(lengths[0])[0] + self.cells[1].between(lengths[1])[0];
-            let [one, other] = ends.map(|s| self.reach(s, MARGIN * f64::from(most - least)));
+            let apart = MARGIN * f64::from(most - least);
+            let [one, other] = ends.map(|s| reach(self.base_radii, [s, self.tangent_length - s], apart));
             let [down, up] = [0, 1].map(|way| one[way].max(other[way]));
             let inside = |at: usize, length: f64| length.clamp(self.ranges[at][0], self.ranges[at][1]);
             lengths = [
@@ -145,24 +146,6 @@ impl Steps {
             ];
         }
         lengths
-    }
-
-    /// How far down and up both flanks they stand apart by this.
-    ///
-    /// They have turned by p + w, the pinion's along s p + r p²/2 and the gear's along g w − r′w²/2 (w and p as w/s = p/g make one of both lengths
-    /// too long), and from there stand apart by that angle times what is farther.
-    fn reach(&self, s: f64, apart: f64) -> [f64; 2] {
-        let least = NEAREST * self.tangent_length;
-        let s = s.clamp(least, self.tangent_length - least);
-        let per_length = 1.0 / self.tangent_length;
-        let gear = self.tangent_length - s;
-        let curvature = s * gear * per_length;
-        // Of a parabola the angle would be that there.
-        let angle = (apart / curvature).sqrt();
-        let turned = angle * per_length;
-        let farther = 2.0 * angle * curvature;
-        [(s, self.base_radii[1]), (gear, self.base_radii[0])]
-            .map(|(other, radius)| farther + 0.5 * radius * (turned * other) * (turned * other))
     }
 
     /// How far places may be from each other at a roll length of the pinion, and by how much the gap bends and its slope grows.
@@ -177,4 +160,21 @@ impl Steps {
         let step = (4.0 * BETWEEN / bend).sqrt().min(self.waves[0] / one).min(self.waves[1] / two);
         [step.clamp(self.within[0], self.within[1]), bend, self.kinks[0] * one + self.kinks[1] * two]
     }
+}
+
+/// How far down and up both flanks from these roll lengths of pinion and gear, at which they touch, they stand apart by this.
+///
+/// They have turned by p + w, the pinion's along f p + r p²/2 and the gear's along q w − r′w²/2 (w and p as w/f = p/q make one of both lengths
+/// too long), and from there stand apart by that angle times what is farther.
+pub(super) fn reach(base_radii: [f64; 2], roll_lengths: [f64; 2], apart: f64) -> [f64; 2] {
+    let least = NEAREST * (roll_lengths[0] + roll_lengths[1]);
+    let [pinion, gear] = roll_lengths.map(|roll_length| roll_length.max(least));
+    let per_length = 1.0 / (pinion + gear);
+    let curvature = pinion * gear * per_length;
+    // Of a parabola the angle would be that there.
+    let angle = (apart / curvature).sqrt();
+    let turned = angle * per_length;
+    let farther = 2.0 * angle * curvature;
+    [(pinion, base_radii[1]), (gear, base_radii[0])]
+        .map(|(other, radius)| farther + 0.5 * radius * (turned * other) * (turned * other))
 }
