@@ -46,8 +46,9 @@ impl Spline {
             between: [knots[0], knots[knots.len() - 1]],
             shortest: f64::INFINITY,
         };
-        let none = [f64::INFINITY, f64::NEG_INFINITY];
-        spline.bends_between = spline.bends().fold(none, |[least, most], bend| [least.min(bend), most.max(bend)]);
+        let mut between = [f64::INFINITY, f64::NEG_INFINITY];
+        spline.visit_bends(|_, bend| between = [between[0].min(bend), between[1].max(bend)]);
+        spline.bends_between = between;
         let [low, high] = spline.bends_between;
         let third = spline.pieces.iter().fold(0.0_f64, |most, piece| most.max(piece[4].abs()));
         if third > 0.0 {
@@ -56,13 +57,7 @@ impl Spline {
         spline
     }
 
-    /// The second derivative at every knot, between which it is straight.
-    pub fn bends(&self) -> impl Iterator<Item = f64> {
-        let at_end = self.rates(self.ends()[1])[2];
-        self.pieces.iter().map(|piece| 2.0 * piece[3]).chain([at_end])
-    }
-
-    /// Visits the knots, with the second derivative at each.
+    /// Visits the knots, with the second derivative at each, between which it is straight.
     #[inline]
     pub fn visit_bends(&self, mut visit: impl FnMut(f64, f64)) {
         for piece in &self.pieces {

@@ -125,8 +125,7 @@ fn random_pair(random: &mut Random) -> Option<GearPair> {
         specification.rack = Rack::ISO_53_A;
         specification
     };
-    let specifications: [Specification; 2] = [gear(60.0), gear(120.0)];
-    let [pinion, gear] = specifications;
+    let [pinion, gear]: [Specification; 2] = [gear(60.0), gear(120.0)];
     GearPair::new(pinion, gear, None).ok()
 }
 
@@ -160,7 +159,7 @@ fn the_gap_of_random_pairs_is_the_least_of_a_dense_scan() {
 }
 
 /// Tier: second method; traces of reliefs that start with a kink, in points so close that the gap hardly bends between two places of a scan, at
-/// 2,000 positions each: the lowest place is never lost. What a spline cannot follow is a sixth of the kink times the distance of the points.
+/// 2,000 positions each: the lowest place is never lost. What a spline cannot follow is no more than a sixth of the kink times the distance of the points here.
 #[test]
 fn the_lowest_place_is_found_wherever_blocks_of_places_begin() {
     let pair = pair();
