@@ -123,7 +123,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let common = stated.outline.tip.tip();
     let (pair, design, built) = if let Some(pair) = gears.pair(common).transpose().map_err(|error| refused(&error))? {
         let flank = stated.outline.flank.as_ref().map(Elements::template).transpose()?;
-        let design = flank.map_or(Ok(Design::default()), |flank| flank.design(&pair, &[]))?;
+        let design = flank.map_or(Ok(Design::default()), |flank| flank.on(&pair).design(&[]))?;
         let built = vec![pair.pinion.clone(), pair.gear.clone()];
         (Some(pair), design, built)
     } else {

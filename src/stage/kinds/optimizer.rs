@@ -24,8 +24,7 @@ use declare::error::{Diagnostic, Failure, Faults};
 use declare::record::{Record, Value};
 use declare::units::RATIO;
 use declare::{Declared, Words};
-use gearmesh::gear::geometry::GearPair;
-use gearmesh::gear::modification::template::Template;
+use gearmesh::gear::modification::template::{Fitted, Template};
 use gearmesh::gear::modification::{self, Design};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
@@ -216,39 +215,45 @@ impl Optimizer {
     }
 
     /// What a point is worth; nothing where the design cannot be built.
-    fn worth(&self, cycle: &MeshCycle, pair: &GearPair, point: &[f64]) -> Worth {
-        let design = self.template.design(pair, point).ok();
-        let values = design.and_then(|design| self.measured(cycle, pair, &design));
+    fn worth(&self, cycle: &MeshCycle, fitted: &Fitted, point: &[f64]) -> Worth {
+        let design = fitted.design(point).ok();
+        let values = design.and_then(|design| self.measured(cycle, fitted, &design));
         self.goal.worth(&self.cases, &values.unwrap_or_else(|| vec![None]))
     }
 
     /// All measures of each case.
-    fn measured(&self, cycle: &MeshCycle, pair: &GearPair, design: &Design) -> Option<Vec<Option<Vec<f64>>>> {
-        self.of_cases(pair, design, |design, torque| self.goal.of_case(&LoadCase::new(cycle, design, torque)))
+    fn measured(&self, cycle: &MeshCycle, fitted: &Fitted, design: &Design) -> Option<Vec<Option<Vec<f64>>>> {
+        self.of_cases((fitted, cycle), design, |loading, _| self.goal.of_case(loading))
     }
 
     /// A value of each case; none where a design is no design any more with what is off.
     fn of_cases<T: Default + Clone>(
         &self,
-        pair: &GearPair,
+        (fitted, cycle): (&Fitted, &MeshCycle),
         design: &Design,
-        mut value: impl FnMut(&Design, f64) -> T,
+        mut value: impl FnMut(&LoadCase, f64) -> T,
     ) -> Option<Vec<T>> {
         let mut values = vec![T::default(); self.cases.all.len()];
-        for off in self.cases.designs(design, pair).ok()? {
+        for off in self.cases.designs(design, fitted.pair()).ok()? {
+            // Gaps do not ask for the torque.
+            let mut loaded: Option<LoadCase> = None;
             for (place, torque) in &off.cases {
-                values[*place] = value(&off.design, *torque);
+                let loading = match &loaded {
+                    Some(other) => other.with_torque(*torque),
+                    None => LoadCase::new(cycle, &off.design, *torque),
+                };
+                values[*place] = value(&loading, *torque);
+                loaded = Some(loading);
             }
         }
         Some(values)
     }
 
     /// Why a search found no design at all, by the one in the middle of the box.
-    fn nothing_built(&self, pair: &GearPair) -> Failure {
+    fn nothing_built(&self, fitted: &Fitted) -> Failure {
         let variables = self.template.variables();
         let middle: Vec<f64> = variables.iter().map(|variable| 0.5 * (variable.minimum + variable.maximum)).collect();
-        let reason =
-            self.template.design(pair, &middle).err().map(|error| format!("; in the middle: {}", error.message));
+        let reason = fitted.design(&middle).err().map(|error| format!("; in the middle: {}", error.message));
         Failure::new(format!(
             "none of the designs that were tried in the box can be built on this pair{}",
             reason.unwrap_or_default()
@@ -270,9 +275,8 @@ impl Optimizer {
     }
 
     /// Says what the law of contact may be off by at the design that was found.
-    fn warn(&self, context: &Context, design: &Design, (pair, cycle): (&GearPair, &MeshCycle)) {
-        let told = self.of_cases(pair, design, |design, torque| {
-            let loading = LoadCase::new(cycle, design, torque);
+    fn warn(&self, context: &Context, design: &Design, (fitted, cycle): (&Fitted, &MeshCycle)) {
+        let told = self.of_cases((fitted, cycle), design, |loading, torque| {
             let doubt = loading.contact_doubt()?;
             let peak_to_peak = loading.peak_to_peak();
             Doubted { design: &self.stated.name, torque, doubt, peak_to_peak }.told()
@@ -284,22 +288,21 @@ impl Optimizer {
         &self,
         context: &Context,
         found: &Found,
-        (pair, cycle): (&GearPair, &MeshCycle),
+        (fitted, cycle): (&Fitted, &MeshCycle),
     ) -> Result<Vec<Table>, Failure> {
         let best = &found.best;
         let failed = |error: TableError| Failure::new(error.to_string());
-        let design = self.template.design(pair, &best.point).map_err(|error| Failure::new(error.message))?;
-        let of_cases =
-            self.of_cases(pair, &design, |design, torque| LoadCase::new(cycle, design, torque).peak_to_peak());
+        let design = fitted.design(&best.point).map_err(|error| Failure::new(error.message))?;
+        let of_cases = self.of_cases((fitted, cycle), &design, |loading, _| loading.peak_to_peak());
         let peak_to_peak = of_cases.into_iter().flatten().fold(0.0, f64::max);
         let limited = |point: &[f64]| {
-            if self.goal.limits.is_empty() { Vec::new() } else { self.worth(cycle, pair, point).limited }
+            if self.goal.limits.is_empty() { Vec::new() } else { self.worth(cycle, fitted, point).limited }
         };
         let balanced = found.front.iter().find(|member| member.point == best.point);
         let further = balanced.map(|member| member.evaluation.further.clone()).unwrap_or_default();
         let name = self.stated.name.as_str();
         let row = BestRow { name, found, peak_to_peak, further, limited: limited(&best.point) };
-        self.warn(context, &design, (pair, cycle));
+        self.warn(context, &design, (fitted, cycle));
         let named = |name: String, point: &[f64]| NamedDesign { name, elements: self.elements_at(point) };
         let mut designs = vec![named(name.to_owned(), &best.point)];
         designs.extend((1..).zip(&found.front).map(|(number, member)| named(self.name_of(number), &member.point)));
@@ -375,16 +378,17 @@ impl Stage for Optimizer {
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let (pair, base) = common::mesh_cycle(inputs, self.settings)?;
         let base = if self.goal.needs_roots() { base.with_roots(&root_influences::of(inputs)?) } else { base };
-        let found = Run::new(self, context, (&base, &pair))?.found()?;
+        let fitted = self.template.on(&pair);
+        let found = Run::new(self, context, (&base, &fitted))?.found()?;
         let cycle = base.sampled(found.settings);
-        let mut tables = self.tables(context, &found, (&pair, &cycle))?;
+        let mut tables = self.tables(context, &found, (&fitted, &cycle))?;
         if context.demand.table(EVALUATIONS) {
             let tried = (1..).zip(&found.tried).map(|(index, (point, value))| (index, point.as_slice(), *value));
             tables.push(
                 self.evaluations().table_of(&tried).map_err(|error: TableError| Failure::new(error.to_string()))?,
             );
         }
-        self.tell_if_simpler_does(context, &found, (&pair, &cycle));
+        self.tell_if_simpler_does(context, &found, (&fitted, &cycle));
         context.work.add(&base.work());
         Ok(tables)
     }

@@ -3,6 +3,7 @@
 //! Up to 128 torques are a chunk each, so an added one computes only itself. Must not know: who made the designs.
 
 mod ahead;
+mod answer;
 mod friction;
 mod nominal;
 mod pressures;
@@ -13,15 +14,15 @@ mod warnings;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
-use std::time::Instant;
 
 use rayon::prelude::*;
 
-use self::friction::{Friction, Lost};
+use self::answer::WantedHere;
+use self::friction::Friction;
 use self::nominal::nominal_root_stresses;
 use self::pressures::CellRow;
 use self::samples::{Sample, Samples};
-use self::tables::{Found, HARMONICS, Keyed, Load, amplitudes, cost, curve, harmonics, points, summary};
+use self::tables::{HARMONICS, Keyed, Load, amplitudes, cost, curve, harmonics, points, summary};
 use crate::stage::cases::{DEVIATIONS, Deviation, Deviations};
 use crate::stage::common::{Contact, Slices};
 use crate::stage::names::{self, summary};
@@ -36,11 +37,8 @@ use declare::record::Record;
 use declare::units::{ANGLE, RATIO, TORQUE, in_unit};
 use gearmesh::gear::contact::SliceCoupling;
 use gearmesh::gear::modification::{self, Design};
-use gearmesh::gear::transmission_error::curve::{Summary, Wanted};
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::doubt::Doubt;
-use gearmesh::gear::transmission_error::pressure::Cornered;
-use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
+use gearmesh::gear::transmission_error::curve::Wanted;
+use gearmesh::gear::transmission_error::cycle::Settings;
 use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES, ROOT_STRESSES};
 use studygraph::stage::steps::Steps;
 use studygraph::table::data::{Cell, Table, TableError};
@@ -133,91 +131,10 @@ const MOST_AT_ONCE: usize = 16;
 /// Shares of each thread, at least, where there are as many tasks: they take unlike times.
 const SHARES: usize = 16;
 
-/// One design under one torque; its points are in the table `curve`.
-struct Answer {
-    summary: Summary,
-    settings: Settings,
-    error: f64,
-    seconds: f64,
-    /// Where sharp corners are in contact, if pressures were asked for.
-    cornered: Option<Cornered>,
-    /// As [`LoadCase::contact_doubt`] has it.
-    doubt: Option<Doubt>,
-    /// What friction takes, if that was asked for.
-    lost: Option<Lost>,
-    /// Nominal root stress by ISO 6336-3 \[Pa\], where it was asked for and holds.
-    iso6336: [f64; 2],
-}
-
 impl Ste {
     fn settings(&self) -> Settings {
         common::settings(self.positions, self.slices, self.contact)
     }
-
-    fn answer(
-        &self,
-        base: &MeshCycle,
-        (design, name): (&Design, &str),
-        torque: f64,
-        wanted: &WantedHere,
-        iso6336: [f64; 2],
-    ) -> Result<(Answer, Found), Failure> {
-        let began = Instant::now();
-        let loading = self.loading(base, design, torque);
-        // Most samplings differ in their positions alone, and a cycle with other slices is a copy of all its tables.
-        let differs = |settings: Settings| Settings { positions: base.settings.positions, ..settings } != base.settings;
-        let mut sampled = Sampled::new(loading.uses_slices(), Against::Coarser, |settings| {
-            if differs(settings) {
-                return self.loading(&base.sampled(settings), design, torque).peak_to_peak();
-            }
-            loading.with_positions(settings.positions).peak_to_peak()
-        });
-        let settings = self.accuracy.map_or(self.settings(), |accuracy| sampled.coarsest(self.settings(), accuracy));
-        let resampled = differs(settings).then(|| base.sampled(settings));
-        let loading = match &resampled {
-            Some(cycle) => self.loading(cycle, design, torque),
-            None => loading.with_positions(settings.positions),
-        };
-        let (points, summary) = loading.curve_and_summary(wanted.of_curve);
-        if !loading.holds(summary.largest.value) {
-            let (found, maximum) = (in_unit(summary.largest.value, "mm"), in_unit(loading.largest_approach(), "mm"));
-            return Err(Failure::new(format!(
-                "design `{name}` at {torque} N m: the gears approach by {found:.6} mm, but `corner_contact: exact` holds \
-                 up to {maximum:.6} mm only; beyond that a tip passes the other one, or a pair farther out would touch"
-            )));
-        }
-        if self.accuracy.is_none() {
-            sampled.know(settings, summary.peak_to_peak);
-        }
-        let error = sampled.error(settings);
-        let doubt = loading.contact_doubt();
-        let cornered = loading.cornered(&points);
-        let lost = self.lost(&loading, wanted.loss);
-        let each = |is_wanted: bool| points.iter().filter(move |_| is_wanted);
-        let contacts = each(wanted.of_pairs)
-            .map(|point| pressures::contacts(&loading, point.cycle_position, point.pairs))
-            .collect();
-        let left = self.friction.iter().flat_map(|friction| {
-            each(wanted.left).map(|point| loading.friction_at(friction.of(), point.cycle_position, point.pairs))
-        });
-        let left = left.collect();
-        let seconds = began.elapsed().as_secs_f64();
-        Ok((
-            Answer { summary, settings, error, seconds, cornered, doubt, lost, iso6336 },
-            Found { points, contacts, left },
-        ))
-    }
-}
-
-/// What is wanted of a curve.
-struct WantedHere {
-    of_curve: Wanted,
-    /// The contacts of all pairs.
-    of_pairs: bool,
-    /// What friction takes over the cycle.
-    loss: bool,
-    /// What it leaves at every position.
-    left: bool,
 }
 
 /// A design as it is made and mounted, its name, and what is off.
@@ -375,11 +292,13 @@ impl Stage for Ste {
             .map(|tasks| {
                 let mut answers = Vec::with_capacity(tasks.len());
                 let mut found = Vec::with_capacity(tasks.len());
-                for &((design, name, deviation), torque) in tasks {
+                let mut before = None;
+                for &(named, torque) in tasks {
                     context.check_stop()?;
+                    let (_, name, deviation) = named;
                     let load = Load { torque, deviation: *deviation };
-                    let (answer, curve) =
-                        self.answer(&base, (design, name), torque, wanted, per_torque.map(|unit| unit * torque))?;
+                    let of_torque = per_torque.map(|unit| unit * torque);
+                    let (answer, curve) = self.answer(&base, named, torque, &mut before, wanted, of_torque)?;
                     answers.push((name.as_str(), load, answer));
                     found.push((name.as_str(), load, curve));
                     steps.done();

@@ -89,8 +89,8 @@ fn compute(
     steps: &Steps,
     answers: &mut [Option<Answer>],
 ) -> Result<(), Failure> {
-    type Found = (Tables, Option<Upstream>);
-    let upstream = |group: &&[usize]| -> Result<Result<Found, String>, Failure> {
+    type Found<'q> = (Tables, Option<Upstream<'q>>);
+    let upstream = |group: &&[usize]| -> Result<Result<Found<'_>, String>, Failure> {
         context.check_stop()?;
         match found_upstream(asked, rows.si(group[0]), context, inputs) {
             Ok(found) => Ok(Ok(found)),
@@ -98,7 +98,7 @@ fn compute(
             Err(Trouble::Failed(failure)) => Err(failure),
         }
     };
-    let found: Vec<Result<Found, String>> = groups.par_iter().map(upstream).collect::<Result<_, _>>()?;
+    let found: Vec<Result<Found<'_>, String>> = groups.par_iter().map(upstream).collect::<Result<_, _>>()?;
     let blocks: Vec<(usize, &[usize])> = groups
         .iter()
         .enumerate()
@@ -153,12 +153,12 @@ fn compute(
 }
 
 /// What rows with these values share: the tables of the stages that no other value changes.
-fn found_upstream(
-    asked: &Asked,
+fn found_upstream<'q>(
+    asked: &'q Asked,
     row: &[f64],
     context: &Context,
     inputs: &Inputs,
-) -> Result<(Tables, Option<Upstream>), Trouble> {
+) -> Result<(Tables, Option<Upstream<'q>>), Trouble> {
     let (chain, columns) = (&asked.chain, asked.columns.as_slice());
     let mut tables: Tables = (0..chain.links.len()).map(|_| None).collect();
     for link in 0..chain.links.len() - 1 {

@@ -17,7 +17,7 @@ use declare::declared::Declared;
 use declare::error::{Failure, suggest};
 use declare::record::{PlacedValue, Record, Value};
 use gearmesh::gear::geometry::GearPair;
-use gearmesh::gear::modification::template::Template;
+use gearmesh::gear::modification::template::{Fitted, Template};
 use gearmesh::gear::modification::{self, Design};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
@@ -51,10 +51,12 @@ enum DesignSource {
 }
 
 /// What rows with the same pair and compliances share.
-pub struct Upstream {
+pub struct Upstream<'q> {
     pair: GearPair,
     base: MeshCycle,
     design: Option<Design>,
+    /// The template that rows have their designs from.
+    fitted: Option<Fitted<'q>>,
 }
 
 /// What the rows before left behind.
@@ -109,13 +111,13 @@ impl Quick {
     ///
     /// # Errors
     /// When the pair cannot be loaded, or the designs cannot be read.
-    pub fn upstream(
-        &self,
+    pub fn upstream<'q>(
+        &'q self,
         chain: &Chain,
         tables: &Tables,
         outer: &Inputs,
         design: Option<&str>,
-    ) -> Result<Upstream, Trouble> {
+    ) -> Result<Upstream<'q>, Trouble> {
         let link = &chain.links[self.last];
         let of = |failure| Trouble::of(link.kind.name, failure);
         let inputs = chain.inputs(self.last, tables, outer);
@@ -142,7 +144,11 @@ impl Quick {
                 Some(only.built(&pair).map_err(of)?)
             }
         };
-        Ok(Upstream { pair, base, design })
+        let fitted = match &self.source {
+            DesignSource::Record { template: Some((template, _)), .. } => Some(template.on(&pair)),
+            _ => None,
+        };
+        Ok(Upstream { pair, base, design, fitted })
     }
 
     /// The asked numbers of rows that differ in their torque alone, as their columns show them, or why there are none.
@@ -204,12 +210,12 @@ impl Quick {
         if let DesignSource::Record { link, template } = &self.source {
             let key = bits(Class::Design);
             if before.design.as_ref().is_none_or(|(old, _)| *old != key) {
-                let built = match template {
-                    Some((template, variables)) => {
+                let built = match (template, &upstream.fitted) {
+                    (Some((_, variables)), Some(fitted)) => {
                         let values: Vec<f64> = variables.iter().map(|column| row[*column]).collect();
-                        template.design(&upstream.pair, &values).map_err(|wrong| wrong.message)
+                        fitted.design(&values).map_err(|wrong| wrong.message)
                     }
-                    None => by_record(&chain.record(*link, columns, row), &upstream.pair),
+                    _ => by_record(&chain.record(*link, columns, row), &upstream.pair),
                 };
                 let built = built.map_err(|message| format!("{}: {message}", chain.links[*link].kind.name));
                 before.design = Some((key, built));

@@ -4,7 +4,9 @@
 //! off by fades by 2 − √3 from point to point. Source: de Boor, A Practical Guide to Splines, chapter IV. Must not know: what
 //! is interpolated.
 
-/// A piecewise cubic with two continuous derivatives between the first and the last of its knots.
+mod sum;
+
+/// A piecewise cubic with two continuous derivatives, of sums but at a few places, between the first and the last of its knots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {
     /// Ascending.
@@ -18,6 +20,8 @@ pub struct Spline {
     between: [f64; 2],
     /// How short its waves are.
     shortest: f64,
+    /// Intervals at whose lower end derivatives may jump, ascending; of sums.
+    jumps: Vec<usize>,
 }
 
 impl Spline {
@@ -45,10 +49,9 @@ impl Spline {
             bends_between: [0.0; 2],
             between: [knots[0], knots[knots.len() - 1]],
             shortest: f64::INFINITY,
+            jumps: Vec::new(),
         };
-        let mut between = [f64::INFINITY, f64::NEG_INFINITY];
-        spline.visit_bends(|_, bend| between = [between[0].min(bend), between[1].max(bend)]);
-        spline.bends_between = between;
+        spline.find_bends();
         let [low, high] = spline.bends_between;
         let third = spline.pieces.iter().fold(0.0_f64, |most, piece| most.max(piece[4].abs()));
         if third > 0.0 {
@@ -57,13 +60,26 @@ impl Spline {
         spline
     }
 
-    /// Visits the knots, with the second derivative at each, between which it is straight.
+    fn find_bends(&mut self) {
+        let mut between = [f64::INFINITY, f64::NEG_INFINITY];
+        self.visit_bends(|_, bend| between = [between[0].min(bend), between[1].max(bend)]);
+        self.bends_between = between;
+    }
+
+    /// Visits the knots, with the second derivative at each, between which it is straight; where it jumps, with both.
     #[inline]
     pub fn visit_bends(&self, mut visit: impl FnMut(f64, f64)) {
-        for piece in &self.pieces {
+        let mut jumps = self.jumps.iter();
+        let mut jump = jumps.next();
+        for (at, piece) in self.pieces.iter().enumerate() {
+            if jump == Some(&at) {
+                let [from, _, _, bend, third] = self.pieces[at - 1];
+                visit(piece[0], 2.0 * bend + 6.0 * (piece[0] - from) * third);
+                jump = jumps.next();
+            }
             visit(piece[0], 2.0 * piece[3]);
         }
-        let [_, last] = self.ends();
+        let last = self.knots[self.pieces.len()];
         visit(last, self.rates(last)[2]);
     }
 

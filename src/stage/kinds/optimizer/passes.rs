@@ -16,7 +16,7 @@ use super::{EVALUATIONS, Optimizer};
 use crate::stage::Context;
 use declare::error::Failure;
 use declare::number::significant;
-use gearmesh::gear::geometry::GearPair;
+use gearmesh::gear::modification::template::Fitted;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::optimize::Foreseen;
 use gearmesh::optimize::constraints::{Evaluation, KEPT};
@@ -92,7 +92,7 @@ pub struct Run<'a> {
     optimizer: &'a Optimizer,
     context: &'a Context<'a>,
     base: &'a MeshCycle,
-    pair: &'a GearPair,
+    fitted: &'a Fitted<'a>,
     /// The most evaluations of all passes.
     budget: f64,
     history: Vec<Generation>,
@@ -124,14 +124,14 @@ impl<'a> Run<'a> {
     pub fn new(
         optimizer: &'a Optimizer,
         context: &'a Context<'a>,
-        (base, pair): (&'a MeshCycle, &'a GearPair),
+        (base, fitted): (&'a MeshCycle, &'a Fitted<'a>),
     ) -> Result<Self, Failure> {
         let bounds = optimizer.bounds().map_err(|wrong| Failure::new(wrong.message))?;
         Ok(Self {
             optimizer,
             context,
             base,
-            pair,
+            fitted,
             budget: 1.0,
             history: Vec::new(),
             evaluations: 0,
@@ -148,7 +148,7 @@ impl<'a> Run<'a> {
     /// # Errors
     /// When it was stopped, nothing can be built, or nothing keeps the constraints.
     pub fn found(mut self) -> Result<Found, Failure> {
-        let asked = self.optimizer.first_settings(self.base, self.pair);
+        let asked = self.optimizer.first_settings(self.base, self.fitted);
         if self.optimizer.is_staged() { self.staged(asked) } else { self.plain(asked) }
     }
 
@@ -195,7 +195,7 @@ impl<'a> Run<'a> {
             self.budget = search.budget().max(1) as f64;
             let reason = self.run(&mut search, settings, SEARCH)?;
             let best = self.kept(search.best())?.clone();
-            let error = self.optimizer.error(self.base, self.pair, &best.point, settings);
+            let error = self.optimizer.error(self.base, self.fitted, &best.point, settings);
             let next = self.next_settings(&best.point, settings, error);
             match next.filter(|_| round < ROUNDS) {
                 Some(next) => (settings, round) = (next, round + 1),
@@ -234,7 +234,7 @@ impl<'a> Run<'a> {
         let mut round = 1;
         loop {
             let best = self.refine_all(&from, settings, rule)?;
-            let error = self.optimizer.error(self.base, self.pair, &best.point, settings);
+            let error = self.optimizer.error(self.base, self.fitted, &best.point, settings);
             match self.next_settings(&best.point, settings, error).filter(|_| round < ROUNDS) {
                 Some(next) => (from, settings, round) = (Starts::of(best, true), next, round + 1),
                 None => {
@@ -304,12 +304,12 @@ impl<'a> Run<'a> {
 
     fn evaluate(&mut self, cycle: &MeshCycle, points: &[Vec<f64>]) -> Result<Vec<Evaluation>, Failure> {
         self.context.check_stop()?;
-        let (optimizer, pair) = (self.optimizer, self.pair);
-        let worths: Vec<Worth> = points.par_iter().map(|point| optimizer.worth(cycle, pair, point)).collect();
+        let (optimizer, fitted) = (self.optimizer, self.fitted);
+        let worths: Vec<Worth> = points.par_iter().map(|point| optimizer.worth(cycle, fitted, point)).collect();
         let evaluations: Vec<Evaluation> = worths.into_iter().map(|worth| worth.evaluation).collect();
         for (point, evaluation) in points.iter().zip(&evaluations) {
             if evaluation.value.is_infinite()
-                && let Err(wrong) = optimizer.template.design(pair, point)
+                && let Err(wrong) = fitted.design(point)
             {
                 self.misfits.0 += 1;
                 if self.misfits.0 == 1 {
@@ -351,7 +351,7 @@ impl<'a> Run<'a> {
 
     fn next_settings(&self, point: &[f64], settings: Settings, error: f64) -> Option<Settings> {
         let accuracy = self.optimizer.stated.accuracy.filter(|accuracy| error > *accuracy)?;
-        let next = finer(settings, self.optimizer.settings_for(self.base, self.pair, point, accuracy));
+        let next = finer(settings, self.optimizer.settings_for(self.base, self.fitted, point, accuracy));
         (next != settings).then_some(next)
     }
 
@@ -378,7 +378,7 @@ impl<'a> Run<'a> {
     }
 
     fn built<'b>(&self, best: Option<&'b Candidate>) -> Result<&'b Candidate, Failure> {
-        best.ok_or_else(|| self.optimizer.nothing_built(self.pair))
+        best.ok_or_else(|| self.optimizer.nothing_built(self.fitted))
     }
 
     fn kept<'b>(&self, best: Option<&'b Candidate>) -> Result<&'b Candidate, Failure> {

@@ -5,9 +5,8 @@
 
 use super::Optimizer;
 use gearmesh::gear::contact::SliceCoupling;
-use gearmesh::gear::geometry::GearPair;
+use gearmesh::gear::modification::template::Fitted;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
 
 /// Places on the diagonal of the box that stand for all of it.
@@ -19,38 +18,38 @@ const FEWEST_SLICES: usize = 5;
 
 impl Optimizer {
     /// The settings to begin with.
-    pub fn first_settings(&self, base: &MeshCycle, pair: &GearPair) -> Settings {
+    pub fn first_settings(&self, base: &MeshCycle, fitted: &Fitted) -> Settings {
         let Some(accuracy) = self.stated.accuracy else { return self.settings };
         let variables = self.template.variables();
         let at = |share: &f64| -> Vec<f64> {
             variables.iter().map(|variable| variable.minimum + share * (variable.maximum - variable.minimum)).collect()
         };
-        let chosen = PROBES.iter().map(at).map(|point| self.settings_for(base, pair, &point, accuracy));
+        let chosen = PROBES.iter().map(at).map(|point| self.settings_for(base, fitted, &point, accuracy));
         chosen.reduce(finer).unwrap_or(self.settings)
     }
 
     /// The coarsest settings that meet an accuracy at one design.
-    pub fn settings_for(&self, base: &MeshCycle, pair: &GearPair, point: &[f64], accuracy: f64) -> Settings {
-        self.at(base, pair, point, |mut sampled| sampled.coarsest(self.settings, accuracy)).unwrap_or(self.settings)
+    pub fn settings_for(&self, base: &MeshCycle, fitted: &Fitted, point: &[f64], accuracy: f64) -> Settings {
+        self.at(base, fitted, point, |mut sampled| sampled.coarsest(self.settings, accuracy)).unwrap_or(self.settings)
     }
 
     /// Estimated relative error of the objective at one design.
-    pub fn error(&self, base: &MeshCycle, pair: &GearPair, point: &[f64], settings: Settings) -> f64 {
-        self.at(base, pair, point, |mut sampled| sampled.error(settings)).unwrap_or(1.0)
+    pub fn error(&self, base: &MeshCycle, fitted: &Fitted, point: &[f64], settings: Settings) -> f64 {
+        self.at(base, fitted, point, |mut sampled| sampled.error(settings)).unwrap_or(1.0)
     }
 
     /// None where the design cannot be built.
     fn at<T>(
         &self,
         base: &MeshCycle,
-        pair: &GearPair,
+        fitted: &Fitted,
         point: &[f64],
         look: impl FnOnce(Sampled<&mut dyn FnMut(Settings) -> f64>) -> T,
     ) -> Option<T> {
-        let design = self.template.design(pair, point).ok()?;
-        let sliced = self.of_cases(pair, &design, |design, torque| LoadCase::new(base, design, torque).uses_slices());
+        let design = fitted.design(point).ok()?;
+        let sliced = self.of_cases((fitted, base), &design, |loading, _| loading.uses_slices());
         let sliced = sliced?.contains(&true);
-        let mut value = |settings| self.worth(&base.sampled(settings), pair, point).evaluation.value;
+        let mut value = |settings| self.worth(&base.sampled(settings), fitted, point).evaluation.value;
         Some(look(Sampled::new(sliced, Against::Finer, &mut value)))
     }
 }

@@ -6,21 +6,20 @@ use super::Optimizer;
 use super::passes::Found;
 use crate::stage::{Context, simpler};
 use declare::number::significant;
-use gearmesh::gear::geometry::GearPair;
+use gearmesh::gear::modification::template::Fitted;
 use gearmesh::gear::transmission_error::asked::Asked;
 use gearmesh::gear::transmission_error::cycle::MeshCycle;
-use gearmesh::gear::transmission_error::load_case::LoadCase;
 
 impl Optimizer {
     /// Says that long relief is as good as what was found, within what counts as a gain, where that has more parts or more
     /// that was left open.
-    pub fn tell_if_simpler_does(&self, context: &Context, found: &Found, (pair, cycle): (&GearPair, &MeshCycle)) {
+    pub fn tell_if_simpler_does(&self, context: &Context, found: &Found, (fitted, cycle): (&Fitted, &MeshCycle)) {
         if self.goal.has_front() || !self.is_staged() || self.template.variables().len() < 2 {
             return;
         }
-        let Some(deflection) = self.deflection(found, pair, cycle) else { return };
+        let Some(deflection) = self.deflection(found, fitted, cycle) else { return };
         let gain = self.rule().improvement;
-        let value = |amount: f64| self.with_long_relief(pair, cycle, amount).unwrap_or(f64::INFINITY);
+        let value = |amount: f64| self.with_long_relief(fitted, cycle, amount).unwrap_or(f64::INFINITY);
         if let Some(simpler) = simpler::as_good(found.best.value, gain, deflection, value) {
             let counts = significant(100.0 * gain, 2);
             let said = simpler.said("objective");
@@ -29,18 +28,17 @@ impl Optimizer {
     }
 
     /// The largest one of all cases.
-    fn deflection(&self, found: &Found, pair: &GearPair, cycle: &MeshCycle) -> Option<f64> {
-        let design = self.template.design(pair, &found.best.point).ok()?;
-        let deflections = self.of_cases(pair, &design, |design, torque| {
-            LoadCase::new(cycle, design, torque).asked(Asked::default()).largest.value
-        });
+    fn deflection(&self, found: &Found, fitted: &Fitted, cycle: &MeshCycle) -> Option<f64> {
+        let design = fitted.design(&found.best.point).ok()?;
+        let deflections =
+            self.of_cases((fitted, cycle), &design, |loading, _| loading.asked(Asked::default()).largest.value);
         Some(deflections?.into_iter().fold(0.0, f64::max))
     }
 
     /// The objective; none where the relief does not fit or a constraint is broken.
-    fn with_long_relief(&self, pair: &GearPair, cycle: &MeshCycle, amount: f64) -> Option<f64> {
-        let design = simpler::long_relief(amount, pair).ok()?;
-        let worth = self.goal.worth(&self.cases, &self.measured(cycle, pair, &design)?);
+    fn with_long_relief(&self, fitted: &Fitted, cycle: &MeshCycle, amount: f64) -> Option<f64> {
+        let design = simpler::long_relief(amount, fitted.pair()).ok()?;
+        let worth = self.goal.worth(&self.cases, &self.measured(cycle, fitted, &design)?);
         let is_kept = worth.evaluation.value.is_finite() && worth.evaluation.violation() == 0.0;
         is_kept.then_some(worth.evaluation.value)
     }

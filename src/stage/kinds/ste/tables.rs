@@ -2,9 +2,10 @@
 //!
 //! Must not know: how a curve is found.
 
+use super::answer::Answer;
 use super::friction::{self, Left};
+use super::pressures;
 use super::pressures::Contacts;
-use super::{Answer, pressures};
 use crate::stage::cases::{DEVIATIONS, Deviation};
 use crate::stage::names;
 use gearmesh::gear::geometry::Side;

@@ -3,7 +3,7 @@
 //! Must not know: any single family, load.
 
 use super::flank::Flank;
-use super::{Design, Gears, Modification, NamedModification};
+use super::{Design, Gears, Modification};
 use crate::gear::geometry::error::shown::decimals;
 use crate::gear::geometry::{GearPair, Side};
 use declare::error::Diagnostic;
@@ -17,14 +17,17 @@ impl Design {
     /// # Errors
     /// When that is more than half of a tooth.
     pub fn with(&self, other: &Self, pair: &GearPair) -> Result<Self, Diagnostic> {
-        let both = |one: &[NamedModification], other: &[NamedModification]| [one, other].concat();
-        let whole = Self {
-            pinion: both(&self.pinion, &other.pinion),
-            gear: both(&self.gear, &other.gear),
-            tilt: self.tilt + other.tilt,
-        };
+        let mut whole = self.clone();
+        whole.append(other);
         whole.check_rooms(Gears::Both, pair)?;
         Ok(whole)
+    }
+
+    /// The same without a look at what is left of the tooth.
+    pub(super) fn append(&mut self, other: &Self) {
+        self.pinion.extend_from_slice(&other.pinion);
+        self.gear.extend_from_slice(&other.gear);
+        self.tilt += other.tilt;
     }
 
     /// Refuses a design that takes more than half of a tooth.

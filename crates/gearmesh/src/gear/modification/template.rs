@@ -2,6 +2,8 @@
 //!
 //! Must not know: optimisers, compliance, load.
 
+use std::borrow::Cow;
+
 use super::{Design, Family, Gears, Where, family};
 use crate::gear::geometry::GearPair;
 use declare::declared::{Declared, Words};
@@ -75,6 +77,36 @@ impl Template {
         &self.variables
     }
 
+    /// For designs on one pair, of which what has no open values is made once.
+    #[must_use]
+    pub fn on(&self, pair: &GearPair) -> Fitted<'_> {
+        let fixed = (0..self.parts.len()).map(|part| {
+            let (family, record) = &self.parts[part];
+            let mut design = Design::default();
+            let is_open = self.slots.iter().any(|(open, ..)| *open == part);
+            // What does not fit is told with every design.
+            (!is_open && (family.put)(&mut design, record, pair).is_ok()).then_some(design)
+        });
+        Fitted { template: self, pair: pair.clone(), fixed: fixed.collect() }
+    }
+}
+
+/// A template on a pair: all that a search asks for again and again.
+#[derive(Clone)]
+pub struct Fitted<'t> {
+    template: &'t Template,
+    pair: GearPair,
+    /// What has no open values, of each part.
+    fixed: Vec<Option<Design>>,
+}
+
+impl Fitted<'_> {
+    /// The pair that designs are made for.
+    #[must_use]
+    pub fn pair(&self) -> &GearPair {
+        &self.pair
+    }
+
     /// The design with `values` (SI) in place of the variables.
     ///
     /// # Errors
@@ -83,34 +115,29 @@ impl Template {
     ///
     /// # Panics
     /// When there are fewer values than variables.
-    pub fn design(&self, pair: &GearPair, values: &[f64]) -> Result<Design, Diagnostic> {
-        // Optimisers come by often: what is left of a tooth is looked at once, and again only to say which part takes it.
-        let design = self.put(values, |design, family, record| (family.put)(design, record, pair))?;
-        match design.check_rooms(Gears::Both, pair) {
-            Ok(()) => Ok(design),
-            Err(_) => self.put(values, |design, family, record| design.add_record(family, record, pair)),
-        }
-    }
-
-    fn put(
-        &self,
-        values: &[f64],
-        put: impl Fn(&mut Design, &'static Family, &Record) -> Result<(), Diagnostic>,
-    ) -> Result<Design, Diagnostic> {
-        let mut design = Design::default();
-        let mut next = 0;
-        for (index, (family, record)) in self.parts.iter().enumerate() {
-            if self.slots.get(next).is_none_or(|(part, ..)| *part != index) {
-                put(&mut design, family, record)?;
-                continue;
-            }
-            let mut record = record.clone();
-            while let Some((_, field, plain)) = self.slots.get(next).filter(|(part, ..)| *part == index) {
+    pub fn design(&self, values: &[f64]) -> Result<Design, Diagnostic> {
+        let Template { parts, slots, .. } = self.template;
+        let (mut design, mut records, mut next) = (Design::default(), Vec::new(), 0);
+        for (index, ((family, record), fixed)) in parts.iter().zip(&self.fixed).enumerate() {
+            let mut record = Cow::Borrowed(record);
+            while let Some((_, field, plain)) = slots.get(next).filter(|(part, ..)| *part == index) {
                 let value = values[next];
-                record.fields[*field].1.value = if *plain { Value::Number(value) } else { Value::Quantity(value) };
+                record.to_mut().fields[*field].1.value =
+                    if *plain { Value::Number(value) } else { Value::Quantity(value) };
                 next += 1;
             }
-            put(&mut design, family, &record)?;
+            match fixed {
+                Some(fixed) => design.append(fixed),
+                None => (family.put)(&mut design, &record, &self.pair)?,
+            }
+            records.push((*family, record));
+        }
+        // What is left of a tooth is looked at once, and again only to say which part takes it.
+        if design.check_rooms(Gears::Both, &self.pair).is_err() {
+            design = Design::default();
+            for (family, record) in records {
+                design.add_record(family, &record, &self.pair)?;
+            }
         }
         Ok(design)
     }

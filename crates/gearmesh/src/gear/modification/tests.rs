@@ -408,7 +408,7 @@ fn a_template_opens_the_ranges_and_closes_them_with_values() {
     let crowning = "pinion.lead_crowning.amount";
     assert_eq!(names, ["tip_relief.amount", "tip_relief.length", crowning, "pinion.lead_crowning.amount_2"]);
     assert_eq!((template.variables()[1].minimum, template.variables()[1].maximum), (0.0, 6e-3));
-    let built = template.design(&pair, &[6.93e-6, 3.41e-3, 5e-6, 0.67e-6]).unwrap();
+    let built = template.on(&pair).design(&[6.93e-6, 3.41e-3, 5e-6, 0.67e-6]).unwrap();
     let fixed = [("amount", Quantity(6.93e-6)), ("length", Quantity(3.41e-3)), ("curve", Choice("parabolic"))];
     let by_hand: Design = design(
         &pair,
@@ -421,7 +421,7 @@ fn a_template_opens_the_ranges_and_closes_them_with_values() {
     )
     .unwrap();
     assert_eq!(built.resolved(), by_hand.resolved());
-    assert!(template.design(&pair, &[1e-6, 20e-3, 0.0, 0.0]).unwrap_err().message.contains("active flank"));
+    assert!(template.on(&pair).design(&[1e-6, 20e-3, 0.0, 0.0]).unwrap_err().message.contains("active flank"));
     let both = [
         ("gear", Choice("both")),
         ("amount", Range(0.0, 1e-6)),

@@ -67,7 +67,7 @@ impl Run<'_> {
             }
             self.note(&evaluations);
         }
-        let best = best.ok_or_else(|| self.optimizer.nothing_built(self.pair))?;
+        let best = best.ok_or_else(|| self.optimizer.nothing_built(self.fitted))?;
         self.shown = off.shown(&coarse);
         let ended = format!("coarse values are off by up to {} %", significant(100.0 * off.value, 2));
         self.passes.push(Pass { what: "confirm", settings: asked, evaluations: looked, best: best.best.value, ended });
@@ -138,7 +138,7 @@ impl Run<'_> {
         let best = Candidate { point: balanced.point.clone(), value: balanced.evaluation.value, violation: 0.0 };
         let left = format!("{} of {looked} points are on the front", front.len());
         self.passes.push(Pass { what: "confirm", settings: asked, evaluations: looked, best: best.value, ended: left });
-        let error = self.optimizer.error(self.base, self.pair, &best.point, asked);
+        let error = self.optimizer.error(self.base, self.fitted, &best.point, asked);
         self.is_accurate(error);
         Ok(self.finish(best, front, (asked, error), ended))
     }

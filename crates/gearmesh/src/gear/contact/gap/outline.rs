@@ -9,7 +9,9 @@ use crate::numeric::quadratic::Quadratic;
 use crate::numeric::spline::Spline;
 
 mod bends;
+mod known;
 pub(super) use bends::PARTS;
+use known::Known;
 
 /// Samples of a piece that may be a wave: enough for sixteen humps.
 const WAVE_SAMPLES: usize = 64;
@@ -26,6 +28,8 @@ const BEND: f64 = 1e-12;
 const KINK: f64 = 1e-5;
 /// Roundings of a position.
 const ROUNDINGS: f64 = 4.0;
+/// How far from the ends of a piece it is sure to be that piece, over its length.
+const INSIDE: f64 = 1e-9;
 /// Distance of the points from which slopes of a profile are taken, in pieces.
 const STEP: f64 = 1e-3;
 
@@ -40,8 +44,7 @@ pub(super) struct Outline<'a> {
     pieces: Vec<Piece>,
     /// Whether it is, in part, a spline through many points.
     pub(super) is_sampled: bool,
-    /// What stands for all parts, over the roll angle, and is held at its ends.
-    spline: Option<&'a Spline>,
+    spline: Option<Known<'a>>,
     /// The roll angle at the position 0, and by how much it grows with the position.
     rolls: [f64; 2],
     /// Positions, ascending, and the least depth that was sampled from there on; of profiles that may bend back.
@@ -97,11 +100,13 @@ impl<'a> Outline<'a> {
             cuts: vec![facing.start, facing.end],
             pieces: Vec::new(),
             is_sampled: parts.iter().any(|part| !part.knots().is_empty()),
-            spline: if let [part] = parts { part.spline() } else { None },
+            spline: None,
             rolls: [0.0; 2],
             minimum: Vec::new(),
         }
         .turning();
+        let ends = [facing.start, facing.end].map(|position| outline.roll(position));
+        outline.spline = Known::of(parts, [ends[0].min(ends[1]), ends[0].max(ends[1])]);
         for roll in parts.iter().flat_map(Section::breaks).copied() {
             let position = outline.position(roll);
             if position > facing.start && position < facing.end {
@@ -145,7 +150,7 @@ impl<'a> Outline<'a> {
             cuts,
             pieces,
             is_sampled: self.is_sampled,
-            spline: self.spline,
+            spline: self.spline.clone(),
             rolls: self.rolls,
             minimum: Vec::new(),
         }
@@ -204,7 +209,7 @@ impl<'a> Outline<'a> {
                 // How far a spline bends back is known from its knots.
                 let shape = if shape == Convexity::Other { Convexity::Convex } else { shape };
                 let middle = self.roll(share(ends, 1, 2));
-                let is_held = self.spline.is_some_and(|spline| {
+                let is_held = self.spline.as_ref().is_some_and(|spline| {
                     let [first, last] = spline.ends();
                     middle < first || middle > last
                 });
@@ -266,7 +271,7 @@ impl<'a> Outline<'a> {
 
     fn sum(&self, position: f64) -> f64 {
         let roll = self.roll(position);
-        match self.spline {
+        match &self.spline {
             Some(spline) => spline.value(within(spline, roll)),
             None => self.parts.iter().map(|part| part.depth(roll)).sum(),
         }
@@ -322,7 +327,8 @@ impl<'a> Outline<'a> {
     #[inline]
     fn known_rates(&self, position: f64, piece: usize) -> Option<[f64; 3]> {
         let [start, rate] = self.rolls;
-        let [depth, slope, bend] = if let Some(spline) = self.spline {
+        let [depth, slope, bend] = if let Some(spline) = &self.spline {
+            let position = if let Known::Sum(_) = spline { self.inside(position, piece) } else { position };
             let place = within(spline, start + rate * position);
             if self.pieces[piece].is_held { [spline.value(place), 0.0, 0.0] } else { spline.rates(place) }
         } else {
@@ -334,6 +340,18 @@ impl<'a> Outline<'a> {
             })?
         };
         Some([depth, slope * rate, bend * rate * rate])
+    }
+
+    /// The position, a little farther inside of its piece where it is at one of the ends, which may be kinks.
+    #[inline]
+    fn inside(&self, position: f64, piece: usize) -> f64 {
+        let ends = [self.cuts[piece], self.cuts[piece + 1]];
+        let inside = INSIDE * (ends[1] - ends[0]);
+        match ends.map(|end| (position - end).abs() < inside) {
+            [true, _] => ends[0] + inside,
+            [_, true] => ends[1] - inside,
+            _ => position,
+        }
     }
 
     fn sampled_rates(&self, position: f64, piece: usize) -> [f64; 3] {

@@ -295,6 +295,6 @@ fn an_optimiser_may_vary_both_shares() {
     let names: Vec<&str> = template.variables().iter().map(|variable| variable.name.as_str()).collect();
     assert_eq!(names, ["arc.tip_share", "arc.length_share"]);
     for point in [[0.02, 0.05], [0.02, 0.25], [0.10, 0.05], [0.10, 0.25]] {
-        assert!(template.design(&pair(), &point).is_ok(), "{point:?}");
+        assert!(template.on(&pair()).design(&point).is_ok(), "{point:?}");
     }
 }

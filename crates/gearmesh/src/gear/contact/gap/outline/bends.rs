@@ -22,7 +22,7 @@ impl Outline<'_> {
                 visit(roll, bend * square);
             }
         };
-        if let Some(spline) = self.spline {
+        if let Some(spline) = &self.spline {
             spline.visit_bends(put);
             return Some(());
         }
@@ -73,7 +73,7 @@ impl Outline<'_> {
     /// The least second derivative anywhere \[1/m\], not above 0, if it is known at once.
     pub(in super::super) fn least_bend(&self) -> Option<f64> {
         let [_, rate] = self.rolls;
-        match self.spline {
+        match &self.spline {
             Some(spline) => Some((spline.least_bend() * rate * rate).min(0.0)),
             None => (!self.is_sampled).then_some(0.0),
         }
@@ -81,7 +81,7 @@ impl Outline<'_> {
 
     /// The largest second derivative \[1/m\], not below 0, as far as knots and a few places of every piece tell.
     pub(in super::super) fn most_bend(&self) -> f64 {
-        if let Some(spline) = self.spline {
+        if let Some(spline) = &self.spline {
             let [_, rate] = self.rolls;
             return (spline.most_bend() * rate * rate).max(0.0);
         }
@@ -98,7 +98,7 @@ impl Outline<'_> {
     /// Depth, slope and bend of what is a spline alone, beyond whose ends it is held; of anything else those of its piece.
     #[inline]
     pub(in super::super) fn held_rates(&self, position: f64) -> [f64; 3] {
-        let Some(spline) = self.spline else { return self.rates(position, self.piece(position)) };
+        let Some(spline) = &self.spline else { return self.rates(position, self.piece(position)) };
         let [at_zero, rate] = self.rolls;
         let [depth, slope, bend] = spline.held_rates(at_zero + rate * position);
         [depth, slope * rate, bend * rate * rate]
@@ -113,7 +113,7 @@ impl Outline<'_> {
     /// How short its waves are: over 2π of what is one spline, and the distance of knots of several.
     pub(in super::super) fn shortest(&self) -> f64 {
         let [_, rate] = self.rolls;
-        if let Some(spline) = self.spline {
+        if let Some(spline) = &self.spline {
             return spline.shortest() / rate.abs();
         }
         let knots = self.parts.iter().map(|part| part.knots().len()).max().unwrap_or(0);
@@ -131,7 +131,7 @@ impl Outline<'_> {
     pub(in super::super) fn depths(&self, base_radius: f64, [first, step]: [f64; 2], count: usize) -> Vec<f32> {
         // Half the square of the roll angle times the base radius is the length.
         let per_length = 2.0 / base_radius;
-        if let (Some(spline), false) = (self.spline, self.is_point) {
+        if let (Some(spline), false) = (&self.spline, self.is_point) {
             return spline.at_roots([first * per_length, step * per_length], count);
         }
         let [from, to] = self.range();

@@ -55,7 +55,7 @@ fn a_search_varies_a_relief_beside_a_trace() {
     assert_eq!(by_trace.variables(), by_crowning.variables());
     for amount in [0.0, 4e-6, 11e-6, 23e-6] {
         let [one, other] = [&by_trace, &by_crowning].map(|template| {
-            let design = template.design(&pair, &[amount]).unwrap();
+            let design = template.on(&pair).design(&[amount]).unwrap();
             LoadCase::new(&cycle, &design, 150.0).peak_to_peak()
         });
         assert!((one - other).abs() < 1e-7 * other, "{amount}: {one:e} {other:e}");
