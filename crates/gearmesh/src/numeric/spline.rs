@@ -5,6 +5,8 @@
 //! is interpolated.
 
 mod sum;
+#[cfg(test)]
+mod tests;
 
 /// A piecewise cubic with two continuous derivatives, of sums but at a few places, between the first and the last of its knots.
 #[derive(Clone, Debug, PartialEq)]
@@ -141,23 +143,63 @@ impl Spline {
     #[allow(clippy::cast_possible_truncation)] // of single precision
     pub fn at_roots(&self, [first, step]: [f64; 2], count: usize) -> Vec<f32> {
         let [low, high] = self.between;
-        let (mut pieces, mut square) = (&self.pieces[..], first);
-        let mut values = vec![0.0; count];
-        for value in &mut values {
-            let root = (if square > 0.0 { square } else { 0.0 }).sqrt();
-            let place = if root > low { root } else { low };
-            let place = if place < high { place } else { high };
-            while let [_, next, ..] = pieces
-                && next[0] <= place
-            {
-                pieces = &pieces[1..];
-            }
-            let [begin, c0, c1, c2, c3] = pieces[0];
-            let t = place - begin;
-            *value = (c0 + t * (c1 + t * (c2 + t * c3))) as f32;
+        let place = |at: usize| (first + step * at as f64).max(0.0).sqrt().clamp(low, high);
+        let interval = |place: f64| self.index.interval(self.pieces.len(), place, |at| self.pieces[at][0]);
+        let from = interval(place(0));
+        if interval(place(count)) - from > 2 * count {
+            return (0..count).map(|at| self.value(place(at)) as f32).collect();
+        }
+        let mut values = vec![self.value(high) as f32; count];
+        let (mut left, mut square) = (values.iter_mut(), first);
+        let held = self.value(low) as f32;
+        while square < low * low {
+            let Some(value) = left.next() else { return values };
+            *value = held;
             square += step;
         }
+        for (piece, end) in self.pieces[from..].iter().zip(&self.knots[from + 1..]) {
+            let [begin, c0, c1, c2, c3] = *piece;
+            let end = if *end < high { *end } else { high };
+            while square < end * end {
+                let Some(value) = left.next() else { return values };
+                let t = square.sqrt() - begin;
+                *value = (c0 + t * (c1 + t * (c2 + t * c3))) as f32;
+                square += step;
+            }
+        }
         values
+    }
+
+    /// Visits the ends of stretches between its own ends, with what it is no less than on each, and not much more: the least of the points that
+    /// span each of its cubics (Bernstein's form), or `negligible` less than at both ends of stretches that are long enough for that.
+    #[inline]
+    pub fn visit_least(&self, negligible: f64, mut visit: impl FnMut(f64, f64)) {
+        let [low, high] = self.between;
+        let lower = |one: f64, other: f64| if one < other { one } else { other };
+        let length = (8.0 * negligible / self.most_bend().max(0.0)).sqrt();
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // not below 0
+        let count = ((high - low) / length).ceil().max(1.0) as usize;
+        if self.jumps.is_empty() && 2 * count < self.pieces.len() {
+            let mut before = self.value(low);
+            for at in 1..=count {
+                let place = low + (high - low) * at as f64 / count as f64;
+                let value = self.value(place);
+                visit(place, lower(before, value) - negligible);
+                before = value;
+            }
+            return;
+        }
+        let mut of = |[begin, c0, c1, c2, _]: [f64; 5], next: f64, end: f64| {
+            let third = (next - begin) * (1.0 / 3.0);
+            let one = c0 + third * c1;
+            let other = one + third * (c1 + 3.0 * third * c2);
+            visit(next, lower(lower(c0, one), lower(other, end)));
+        };
+        for ends in self.pieces.windows(2) {
+            of(ends[0], ends[1][0], ends[1][1]);
+        }
+        let last = self.knots[self.pieces.len()];
+        of(self.pieces[self.pieces.len() - 1], last, self.value(last));
     }
 
     /// The largest second derivative over the largest third one, without their signs: of waves of one length that over 2π. Without bound
@@ -304,102 +346,5 @@ impl Hermite {
         let t = ((x - self.knots[at]) / step).clamp(0.0, 1.0);
         let (s, end) = (1.0 - t, t * t * (3.0 - 2.0 * t));
         (at, [1.0 - end, end, step * t * s * s, -step * t * t * s])
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const KNOTS: [f64; 7] = [0.0, 0.1, 0.35, 0.4, 0.9, 1.0, 1.7];
-    const VALUES: [f64; 7] = [1.0, -0.3, 0.8, 0.2, 0.5, 2.0, -1.0];
-
-    /// Tier: second method; values and both derivatives of `scipy.interpolate.CubicSpline` (1.17) through the same points.
-    #[test]
-    fn splines_are_those_of_scipy() {
-        let rows = [
-            (0.05, [0.009_597_986_096_912_758, -12.279_612_334_608_757, 272.321_611_122_469_73]),
-            (0.2, [0.258_750_912_755_206_23, 9.118_162_368_198_144, 12.982_051_581_622_216]),
-            (0.37, [0.591_169_151_794_842, -12.091_058_430_937_28, -124.248_649_122_294_61]),
-            (0.6, [-1.269_763_851_973_010_8, -1.795_784_531_354_970_7, 53.838_201_361_100_54]),
-            (0.95, [1.211_895_117_124_747_2, 15.131_163_653_357_48, 30.483_906_300_201_568]),
-            (1.3, [6.125_485_001_606_447, 6.519_473_814_878_623, -79.693_562_520_080_6]),
-            (1.69, [-0.504_814_341_647_925_6, -48.501_005_578_759_774, -202.462_742_062_680_46]),
-        ];
-        let spline = Spline::new(&KNOTS, &VALUES);
-        for (x, exact) in rows {
-            for (found, exact) in spline.rates(x).into_iter().zip(exact) {
-                assert!((found - exact).abs() <= 1e-12 * exact.abs().max(1.0), "{x}: {found} is not {exact}");
-            }
-            assert!((spline.value(x) - spline.rates(x)[0]).abs() < 1e-15);
-        }
-    }
-
-    /// Tier: closed form; cubics come back, of two points lines, of three parabolas.
-    #[test]
-    fn cubics_are_followed_exactly() {
-        let cubic = |degree: usize, x: f64| [1.0, x, x * x, x * x * x][..=degree].iter().sum::<f64>();
-        for (count, degree) in [(2, 1), (3, 2), (4, 3), (5, 3), (7, 3)] {
-            let values: Vec<f64> = KNOTS[..count].iter().map(|x| cubic(degree, *x)).collect();
-            let spline = Spline::new(&KNOTS[..count], &values);
-            for x in [-0.1, 0.02, 0.1, 0.2, 0.38, 0.5, 2.0] {
-                assert!((spline.value(x) - cubic(degree, x)).abs() < 1e-12, "{count} points at {x}");
-            }
-        }
-    }
-
-    /// Tier: order of convergence, the fourth, up to both ends.
-    #[test]
-    fn twice_the_points_are_sixteen_times_as_good() {
-        let off = |count: u32| {
-            let knots: Vec<f64> = (0..=count).map(|at| 3.0 * f64::from(at) / f64::from(count)).collect();
-            let values: Vec<f64> = knots.iter().map(|x| libm::sin(*x)).collect();
-            let spline = Spline::new(&knots, &values);
-            (0..=1000)
-                .map(|at| 3e-3 * f64::from(at))
-                .map(|x| (spline.value(x) - libm::sin(x)).abs())
-                .fold(0.0, f64::max)
-        };
-        for count in [20, 40, 80] {
-            let order = libm::log2(off(count) / off(2 * count));
-            assert!((order - 4.0).abs() < 0.5, "{count}: {order}");
-        }
-    }
-
-    /// Tier: second method; values in a row are those one by one, held beyond both ends.
-    #[test]
-    fn values_in_a_row_are_those_one_by_one() {
-        let spline = Spline::new(&KNOTS[1..], &VALUES[1..]);
-        for (count, step) in [(80, 0.05), (700, 0.005)] {
-            let values = spline.at_roots([-0.1, step], count);
-            assert_eq!(values.len(), count);
-            for (at, value) in (0..).zip(values) {
-                let square: f64 = -0.1 + step * f64::from(at);
-                let exact = spline.value(square.max(0.0).sqrt().clamp(KNOTS[1], KNOTS[6]));
-                assert!((f64::from(value) - exact).abs() < 1e-6, "{square}: {value} {exact}");
-            }
-        }
-    }
-
-    /// Tier: second method; with its own slopes, cubics between known values and slopes are the spline.
-    #[test]
-    fn cubics_of_values_and_slopes_are_the_spline() {
-        let (spline, hermite) = (Spline::new(&KNOTS, &VALUES), Hermite::new(&KNOTS));
-        let slopes = spline.slopes();
-        for at in 0..=340 {
-            let x = 5e-3 * f64::from(at);
-            let (at, [a, b, c, d]) = hermite.weights(x);
-            let value = a * VALUES[at] + b * VALUES[at + 1] + c * slopes[at] + d * slopes[at + 1];
-            assert!((value - spline.value(x)).abs() < 1e-13, "{x}");
-            let (at, rates) = hermite.rates(x);
-            for (weights, exact) in rates.into_iter().zip(spline.rates(x)) {
-                let ends = [VALUES[at], VALUES[at + 1], slopes[at], slopes[at + 1]];
-                let found: f64 = weights.iter().zip(ends).map(|(weight, value)| weight * value).sum();
-                assert!((found - exact).abs() < 1e-11 * exact.abs().max(1.0), "{x}: {found} {exact}");
-            }
-        }
-        assert_eq!(hermite.weights(-1.0), (0, [1.0, 0.0, 0.0, 0.0]));
-        assert_eq!(hermite.weights(9.0), (5, [0.0, 1.0, 0.0, 0.0]));
-        assert_eq!(hermite.knots(), KNOTS);
     }
 }

@@ -8,7 +8,7 @@
 use super::separation::{Facing, Touch};
 use crate::gear::geometry::{GearPair, Side};
 use crate::gear::modification::section::Profiles;
-use bends::are_rough;
+use bends::may_be_rough;
 use beyond::Turn;
 use outline::Outline;
 use rough::Rough;
@@ -105,8 +105,8 @@ impl<'a> Gaps<'a> {
     fn of(pair: &GearPair, [pinion, gear]: &Profiles<'a>) -> Self {
         let facings = [Side::Gear, Side::Pinion].map(|side| Facing::new(pair, side));
         let (point, flank) = (Outline::new(gear, facings[0], true), Outline::new(pinion, facings[0], false));
-        let is_rough = are_rough(&facings[0], &point, &flank);
-        let is_convex = !is_rough && point.is_convex() && flank.is_convex();
+        let may_be_rough = may_be_rough(&facings[0], &point, &flank);
+        let is_convex = point.is_convex() && flank.is_convex();
         let (flank_too, point_too) = (point.mirrored(facings[1]), flank.mirrored(facings[1]));
         let turn = Turn::default();
         let mut ways = [
@@ -117,8 +117,8 @@ impl<'a> Gaps<'a> {
         for way in ways.iter_mut().filter(|way| modified && way.facing.round > 0.0) {
             way.turn = way.turned();
         }
-        let rough = is_rough.then(|| Rough::new(pair, &ways));
-        Self { ways, modified, is_convex, rough }
+        let rough = if may_be_rough { Rough::new(pair, &ways, is_convex) } else { None };
+        Self { ways, modified, is_convex: is_convex && rough.is_none(), rough }
     }
 
     /// For a search that needs no convexity.

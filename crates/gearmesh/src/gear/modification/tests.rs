@@ -422,6 +422,13 @@ fn a_template_opens_the_ranges_and_closes_them_with_values() {
     .unwrap();
     assert_eq!(built.resolved(), by_hand.resolved());
     assert!(template.on(&pair).design(&[1e-6, 20e-3, 0.0, 0.0]).unwrap_err().message.contains("active flank"));
+    // What has no open values and does not fit is told of every design.
+    let long = [("gear", Choice("pinion")), ("amount", Quantity(1e-6)), ("length", Quantity(20e-3))];
+    let template = Template::new(&members_of(&[("lead_crowning", &crown), ("tip_relief", &long)])).unwrap();
+    let fitted = template.on(&pair);
+    for amount in [0.0, 5e-6] {
+        assert!(fitted.design(&[amount]).unwrap_err().message.contains("active flank"));
+    }
     let both = [
         ("gear", Choice("both")),
         ("amount", Range(0.0, 1e-6)),

@@ -10,7 +10,7 @@ use crate::numeric::spline::Spline;
 
 mod bends;
 mod known;
-pub(super) use bends::PARTS;
+pub(super) use bends::Back;
 use known::Known;
 
 /// Samples of a piece that may be a wave: enough for sixteen humps.
@@ -193,6 +193,15 @@ impl<'a> Outline<'a> {
                 self.pieces.push(Piece { shape, is_held: false, quadratic: Some(quadratic) });
                 continue;
             }
+            if let Some(spline) = &self.spline {
+                // How far it bends back is known from its knots.
+                let [first, last] = spline.ends();
+                let middle = self.roll(share(ends, 1, 2));
+                let is_held = middle < first || middle > last;
+                cuts.push(ends[1]);
+                self.pieces.push(Piece { shape: Convexity::Convex, is_held, quadratic: None });
+                continue;
+            }
             let depths: [f64; WAVE_SAMPLES + 1] =
                 std::array::from_fn(|index| self.sum(share(ends, index, WAVE_SAMPLES)));
             let shape = Convexity::of(&depths);
@@ -206,14 +215,9 @@ impl<'a> Outline<'a> {
                 }
             } else {
                 cuts.push(ends[1]);
-                // How far a spline bends back is known from its knots.
+                // The same of several splines.
                 let shape = if shape == Convexity::Other { Convexity::Convex } else { shape };
-                let middle = self.roll(share(ends, 1, 2));
-                let is_held = self.spline.as_ref().is_some_and(|spline| {
-                    let [first, last] = spline.ends();
-                    middle < first || middle > last
-                });
-                self.pieces.push(Piece { shape, is_held, quadratic: None });
+                self.pieces.push(Piece { shape, is_held: false, quadratic: None });
             }
         }
         self.cuts = cuts;
@@ -246,18 +250,21 @@ impl<'a> Outline<'a> {
 
     /// Whether the profile bends back nowhere, at a kink neither.
     pub(super) fn is_convex(&self) -> bool {
-        if self.pieces.iter().any(|piece| piece.shape == Convexity::Other) {
-            return false;
+        self.pieces.iter().all(|piece| piece.shape != Convexity::Other) && self.kinks_back().is_empty()
+    }
+
+    /// The cuts at which it bends back.
+    fn kinks_back(&self) -> Vec<f64> {
+        if self.parts.is_empty() {
+            return Vec::new();
         }
         // At both ends of every piece.
-        if self.parts.is_empty() {
-            return true;
-        }
         let slopes: Vec<[f64; 2]> = (0..self.pieces())
             .map(|piece| [piece, piece + 1].map(|end| self.rates(self.cuts[end], piece)[1]))
             .collect();
         let largest = slopes.iter().flatten().fold(0.0_f64, |largest, slope| largest.max(slope.abs()));
-        slopes.windows(2).all(|pieces| pieces[1][0] - pieces[0][1] >= -KINK * largest)
+        let kinks = slopes.windows(2).zip(&self.cuts[1..]);
+        kinks.filter(|(pieces, _)| pieces[1][0] - pieces[0][1] < -KINK * largest).map(|(_, cut)| *cut).collect()
     }
 
     pub(super) fn depth(&self, position: f64) -> f64 {

@@ -5,34 +5,32 @@
 //! places near enough are looked at, in steps between which the gap falls by no more than is known from how the profiles bend,
 //! and those that could be the lowest are followed on the profiles themselves. Must not know: load, what the profiles are.
 
-use super::{Way, pulled};
+use super::Way;
 use crate::gear::geometry::GearPair;
 use depths::{BLOCK, LANES};
+use fall::Fall;
 use hull::Hull;
-use near::{NEAR, Near};
-use scan::{Flanks, Pair, Scan, positive, single};
+use line::Pair;
+use pulp::{Arch, Simd, WithSimd};
+use scan::{Flanks, Scan, positive, single};
 use steps::{Need, Steps};
 
 mod depths;
+mod fall;
 mod hull;
+mod line;
 mod near;
 mod scan;
 mod steps;
 
 /// By how much the gap may still be lower between two places than a parabola through three tells, over how much it may be lower than at both.
 const LEFT: f64 = 0.5;
-/// What may be left of the gap to fall \[m\], of which a parabola tells all but a hundredth.
-const NEGLIGIBLE: f64 = 1e-10;
-/// The most steps of Newton's method and of halving.
-const MOST_STEPS: usize = 48;
-/// How short a step is of which a parabola tells nearly all, over those of a scan.
-const SHORT: f64 = 0.05;
-/// How near two places between which the gap is lowest are one, over the steps of a scan.
-const CLOSEST: f64 = 1e-6;
 /// Of single precision, over the length of the line of action: a hundredth of a half of its last bits, as flanks turn by no more.
 const ROUNDING: f32 = 1e-9;
 /// By how many steps two estimates of the lowest place between two differ at the most, where it is one.
 const ALIKE: f32 = 0.2;
+/// How far a step of a search may be where there is one lowest place, over the length of a flank.
+const FAR: f64 = 0.01;
 /// Places that wait to be followed.
 const WAITING: usize = 8;
 /// Parts of the path in each of which it is known how near places have to be.
@@ -44,7 +42,8 @@ pub(super) struct Rough {
     pair: Pair,
     /// Tables of both flanks, each for parts of the path that want the same steps.
     stretches: Vec<Flanks>,
-    tangent_length: f64,
+    /// What depths are no less than, over the lengths along both flanks.
+    hulls: [Hull; 2],
     /// Where parts of the path begin, and how many there are in a length.
     from: f64,
     per_length: f64,
@@ -56,7 +55,10 @@ pub(super) struct Rough {
 /// What a scan goes by on a part of the path.
 #[derive(Clone, Copy, Debug, Default)]
 struct Part {
-    stretch: usize,
+    /// Of tables; none where the flanks bend back by less than the separation bends.
+    stretch: Option<usize>,
+    /// The distance of places \[m\].
+    step: f64,
     /// By how much the gap is lower between two places than at both, and what is left of that when a parabola tells by how much \[m\].
     dip: f32,
     between: f32,
@@ -64,83 +66,124 @@ struct Part {
 
 /// A search for the least gap at one path position.
 struct Search<'a, 'b> {
-    near: Near<'a, 'b>,
+    fall: Fall<'a, 'b>,
     scan: Scan<'b>,
     part: Part,
     /// By how much depths and separations of one place differ \[m\].
     rounding: f32,
-    /// The least gap that was found, and what that of the places that wait is no higher than.
-    least: f64,
+    /// What the least gap that was found, or is at places that wait, is no higher than.
     seen: f32,
+    registers: Arch,
     /// The gap there by a parabola, and the number of the place.
     waiting: [(f32, f64); WAITING],
     count: usize,
 }
 
+/// A look at places from this one on.
+struct Look<'s, 'a, 'b> {
+    search: &'s mut Search<'a, 'b>,
+    first: isize,
+}
+
+impl WithSimd for Look<'_, '_, '_> {
+    type Output = [f32; LANES];
+
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // what is not inlined has registers of its own
+    fn with_simd<S: Simd>(self, _registers: S) -> Self::Output {
+        self.search.look_closely_at(self.first)
+    }
+}
+
 impl Rough {
-    pub(super) fn new(pair: &GearPair, ways: &[Way; 2]) -> Self {
+    /// None where flanks bend back by less than the separation bends, if they do so wherever they may touch and bend back at no kink elsewhere.
+    pub(super) fn new(pair: &GearPair, ways: &[Way; 2], is_convex: bool) -> Option<Self> {
+        let pair = Pair::new(pair, ways);
         // Each flank before points of the other one, over its own roll length.
         let outlines = [&ways[0].flank, &ways[1].flank];
         let steps = Steps::new(pair, outlines);
-        let [from, to] = steps.roll_lengths;
-        let (mut parts, mut wanted) = ([Part::default(); PARTS], Vec::<Need>::new());
-        let needs = steps.of::<PARTS>();
-        let finest = needs.iter().map(|need| need.step).fold(f64::INFINITY, f64::min);
-        for (part, need) in parts.iter_mut().zip(needs) {
-            // Parts beside each other have one table, unless one of them can do with half as many places.
-            let step = finest * libm::exp2(libm::log2(need.step / finest).floor());
-            match wanted.last_mut() {
-                Some(last) if last.step.total_cmp(&step).is_eq() => last.widen(&need.lengths),
-                _ => wanted.push(Need { step, ..need }),
-            }
-            // What a function falls by between two places at which it is as high.
-            let [dip, of_kinks] = [0.125 * step * step * need.bend, 0.5 * step * need.kink];
-            *part =
-                Part { stretch: wanted.len() - 1, dip: single(dip + of_kinks), between: single(LEFT * dip + of_kinks) };
-        }
-        let stretches: Vec<Flanks> =
-            wanted.iter().map(|need| Flanks::new(outlines, steps.base_radii, need.lengths, need.step)).collect();
-        let hulls = [0, 1].map(|at| Hull::new(steps.ranges[at], stretches.iter().map(|flanks| &flanks.depths[at])));
+        let [from, to] = pair.roll_lengths[0];
         // Over the own roll length, at its lower end.
         let separation = |at: usize| {
-            let (own, length, radius) = (outlines[at].range()[0].max(0.0), pair.tangent_length, steps.base_radii[at]);
+            let (own, length, radius) = (outlines[at].range()[0].max(0.0), pair.tangent_length, pair.base_radii[at]);
             length * own / ((length - own) * radius * radius)
         };
-        // One where only both together bend back so much.
-        let crests = (outlines[0].crests(separation(0)) + outlines[1].crests(separation(1))).max(1);
-        Self {
-            pair: Pair { base_radii: steps.base_radii, ranges: steps.ranges, hulls },
+        let back = [0, 1].map(|at| outlines[at].least_bends(separation(at)));
+        let needs = steps.of::<PARTS>();
+        let are_rough = needs.map(|need| steps.are_rough(&back, need.lengths));
+        if is_convex && !are_rough.contains(&true) {
+            return None;
+        }
+        let finest = needs.iter().map(|need| need.step).fold(f64::INFINITY, f64::min);
+        let (mut parts, mut wanted) = ([Part::default(); PARTS], Vec::<Need>::new());
+        let mut is_after_rough = false;
+        for ((part, need), is_rough) in parts.iter_mut().zip(needs).zip(are_rough) {
+            // Parts beside each other have one table, unless one of them can do with half as many places.
+            let step = finest * libm::exp2(libm::log2(need.step / finest).floor());
+            if is_rough {
+                match wanted.last_mut() {
+                    Some(last) if is_after_rough && last.step.total_cmp(&step).is_eq() => last.widen(&need.lengths),
+                    _ => wanted.push(Need { step, ..need }),
+                }
+            }
+            is_after_rough = is_rough;
+            // What a function falls by between two places at which it is as high.
+            let [dip, of_kinks] = [0.125 * step * step * need.bend, 0.5 * step * need.kink];
+            let stretch = is_rough.then(|| wanted.len() - 1);
+            *part = Part { stretch, step, dip: single(dip + of_kinks), between: single(LEFT * dip + of_kinks) };
+        }
+        let stretches: Vec<Flanks> =
+            wanted.iter().map(|need| Flanks::new(outlines, pair.base_radii, need.lengths, need.step)).collect();
+        let hulls = [0, 1].map(|at| Hull::new(outlines[at], pair.base_radii[at], pair.ranges[at]));
+        Some(Self {
+            pair,
             stretches,
-            tangent_length: pair.tangent_length,
+            hulls,
             from,
             per_length: PARTS as f64 / (to - from),
             parts,
-            crests,
-        }
+            // One where only both together bend back so much.
+            crests: (back[0].crests + back[1].crests).max(1),
+        })
+    }
+
+    fn part(&self, s: f64) -> &Part {
+        &self.parts[positive((s - self.from) * self.per_length).min(PARTS - 1)]
     }
 
     /// The least of a gap and of those at all places of both flanks.
     pub(super) fn least(&self, ways: &[Way; 2], s: f64, gap: f64) -> f64 {
-        let part = self.parts[positive((s - self.from) * self.per_length).min(PARTS - 1)];
-        let nominal = [s, self.tangent_length - s];
-        let flanks = &self.stretches[part.stretch];
-        let Some(mut scan) = Scan::new(&self.pair, flanks, nominal) else { return gap };
-        let near = Near { ways, base_radii: self.pair.base_radii, nominal };
+        let part = *self.part(s);
+        let Some(mut fall) = Fall::new(&self.pair, ways, s, part.step) else { return gap };
+        fall.least = gap;
+        let Fall { near, mut line, .. } = fall;
         // Beyond an end of contact, where the end of one flank is nearest to the other one: anywhere on that, so that places are told there only.
         let beside;
-        if let Some(end) = ways.iter().position(|way| way.facing.start > way.facing.turned(way.side, s)) {
-            let (roll_lengths, is_ahead) = scan.roll_lengths(scan.range[end]);
+        let flanks = if let Some(end) = ways.iter().position(|way| way.facing.start > way.facing.turned(way.side, s)) {
+            let (roll_lengths, is_ahead) = line.roll_lengths(line.range[end]);
             let here = near.at(roll_lengths, is_ahead);
-            beside = self.pair.beside([&ways[0].flank, &ways[1].flank], [roll_lengths, here.met], &here, flanks.step);
-            scan = scan.on(&beside);
-            scan.count_from(roll_lengths, here.apart, here.met);
-            if scan.range[0] > scan.range[1] {
+            let outlines = [&ways[0].flank, &ways[1].flank];
+            beside = self.pair.beside((outlines, &self.hulls), [roll_lengths, here.met], &here, part.step);
+            line.count_from(roll_lengths, here.apart, here.met);
+            if line.range[0] > line.range[1] {
                 return gap;
             }
-        }
+            &beside
+        } else {
+            let Some(stretch) = part.stretch else {
+                // There is one lowest place, however far.
+                fall.step = FAR * self.pair.longest();
+                fall.down_from(line.nominal());
+                return fall.least;
+            };
+            &self.stretches[stretch]
+        };
+        let scan = Scan::new(line, flanks, &self.hulls);
         let waiting = [(0.0, 0.0); WAITING];
-        let rounding = ROUNDING * single(self.tangent_length);
-        Search { near, scan, part, rounding, least: gap, seen: single(gap), waiting, count: 0 }.run()
+        let rounding = ROUNDING * single(self.pair.tangent_length);
+        let registers = Arch::new();
+        fall.line = line;
+        Search { fall, scan, part, rounding, seen: single(gap), registers, waiting, count: 0 }.run()
     }
 }
 
@@ -152,7 +195,7 @@ impl Search<'_, '_> {
         let (first, last) = ((ends[0] as isize).max(lowest), (ends[1] as isize + 1).min(highest + width - 1));
         debug_assert!(first <= highest, "a scan begins where there are depths");
         if first > highest {
-            return self.least;
+            return self.fall.least;
         }
         let middle = (self.scan.nominal() as isize - width / 2).min(last + 1 - width).max(first);
         let [mut down, mut up] = [middle, middle + width];
@@ -177,17 +220,24 @@ impl Search<'_, '_> {
             }
         }
         if down <= first {
-            self.follow_end(false);
+            self.fall.down_from_end(false);
         }
         if up > last {
-            self.follow_end(true);
+            self.fall.down_from_end(true);
         }
         self.follow_those_that_wait();
-        self.least
+        self.fall.least
     }
 
-    /// Lets those of a block of places wait that may be the lowest; tells how far the flanks stand apart there.
+    /// Lets those of a block of places wait that may be the lowest; tells how far the flanks stand apart there. With registers as wide as the
+    /// processor has, by which no bit differs.
     fn look_at(&mut self, first: isize) -> [f32; LANES] {
+        self.registers.dispatch(Look { search: self, first })
+    }
+
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // as in `Look`
+    fn look_closely_at(&mut self, first: isize) -> [f32; LANES] {
         let [mut values, apart] = self.scan.values(first - 1);
         // A place is not as high in the next block, to the last bits: neither may leave the lowest one to the other.
         values[0] += self.rounding;
@@ -232,88 +282,21 @@ impl Search<'_, '_> {
             (0..self.count).min_by(|one, other| self.waiting[*one].0.total_cmp(&self.waiting[*other].0))
         {
             let (lowest, number) = self.waiting[next];
-            if f64::from(lowest) >= self.least {
+            if f64::from(lowest) >= self.fall.least {
                 break;
             }
             self.count -= 1;
             self.waiting[next] = self.waiting[self.count];
-            self.follow(self.scan.at(number));
+            self.fall.down_from(self.scan.at(number));
         }
         self.count = 0;
-        self.seen = self.seen.min(single(self.least));
-    }
-
-    /// At a length along the pinion's flank, by the separation in closed form or, far off, as exactly as anything is known.
-    fn pull(&self, place: f64) -> [f64; 3] {
-        let (roll_lengths, is_ahead) = self.scan.roll_lengths(place);
-        if self.near.angle(roll_lengths) > NEAR {
-            self.exactly(place)
-        } else {
-            self.near.at(roll_lengths, is_ahead).rates
-        }
-    }
-
-    /// The same from the separation of points.
-    fn exactly(&self, place: f64) -> [f64; 3] {
-        let (roll_lengths, is_ahead) = self.scan.roll_lengths(place);
-        let Near { ways, nominal, base_radii } = self.near;
-        let (way, point) = (&ways[usize::from(!is_ahead)], usize::from(is_ahead));
-        let own = way.facing.turned(way.side, nominal[0]);
-        let before = (nominal[point] - roll_lengths[point]).max(way.facing.start - own).max(0.0);
-        let touch = way.facing.touch(own + before, before);
-        let [gap, slope, bend] =
-            pulled(&touch, way.point.held_rates(own + before), way.flank.held_rates(touch.curvature));
-        // Over the length along the flank, against which the point moves.
-        let rate = base_radii[point] / roll_lengths[point];
-        let bend = (bend + slope / roll_lengths[point]) * rate * rate;
-        [gap, if is_ahead { slope * rate } else { -slope * rate }, bend]
-    }
-
-    /// The gap may be lowest at an end, or between that and the place next to it.
-    fn follow_end(&mut self, is_up: bool) {
-        // Not beyond it, where depths are held.
-        let [low, high] = self.scan.range;
-        let inside = CLOSEST * self.scan.step();
-        let end = if is_up { (high - inside).max(low) } else { (low + inside).min(high) };
-        let [gap, slope, bend] = self.pull(end);
-        self.least = self.least.min(gap);
-        let falls = if is_up { slope } else { -slope };
-        if bend > 0.0 && falls > 0.0 && falls < 2.0 * bend * self.scan.step() {
-            self.follow(end);
-        }
-    }
-
-    /// From one place down to the lowest one beside it.
-    fn follow(&mut self, place: f64) {
-        let (ends, step) = (self.scan.range, self.scan.step());
-        let [mut low, mut high] = ends;
-        let mut at = place.clamp(low, high);
-        for _ in 0..MOST_STEPS {
-            let [gap, slope, bend] = self.pull(at);
-            let newton = if bend > 0.0 { -slope / bend } else { (2.0 * step).copysign(-slope) };
-            let next = at + newton.clamp(-2.0 * step, 2.0 * step);
-            // Of so short a step the parabola tells all but a hundredth.
-            let negligible = if newton.abs() <= SHORT * step { 10.0 * NEGLIGIBLE } else { NEGLIGIBLE };
-            if bend > 0.0 && (slope * newton).abs() <= negligible && next >= low && next <= high {
-                self.least = self.least.min(gap + 0.5 * slope * newton);
-                break;
-            }
-            self.least = self.least.min(gap);
-            *(if slope < 0.0 { &mut low } else { &mut high }) = at;
-            // What falls beyond an end is lowest there, and each end is looked at for itself.
-            if high - low <= CLOSEST * step
-                || (next <= ends[0] && low <= ends[0])
-                || (next >= ends[1] && high >= ends[1])
-            {
-                break;
-            }
-            at = if next > low && next < high { next } else { 0.5 * (low + high) };
-        }
+        self.seen = self.seen.min(single(self.fall.least));
     }
 }
 
 /// A bit for each place that is lower than both beside it and than this.
-#[inline]
+#[inline(always)]
+#[allow(clippy::inline_always)] // as in `Look`
 fn low(values: &[f32; LANES], reach: f32) -> u32 {
     let mut bits = [0_u32; LANES];
     for at in 1..LANES - 1 {

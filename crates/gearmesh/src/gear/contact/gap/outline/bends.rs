@@ -2,11 +2,47 @@
 //!
 //! Must not know: the other flank.
 
-use super::{Outline, SAMPLES, share};
+use super::{Convexity, Outline, SAMPLES, share};
 use crate::gear::modification::section::Section;
 
 /// Parts of the path in each of which it is known how far a spline bends back.
-pub(in super::super) const PARTS: usize = 32;
+const PARTS: usize = 32;
+
+/// How far a profile bends back along the path.
+#[derive(Clone, Debug)]
+pub(in super::super) struct Back {
+    /// The least second derivative in each of equal parts \[1/m\], not above 0; without bound where it kinks back, or nobody knows.
+    least: [f64; PARTS],
+    pub(in super::super) crests: usize,
+    from: f64,
+    per_length: f64,
+}
+
+impl Back {
+    fn part(&self, position: f64) -> usize {
+        part((position - self.from) * self.per_length)
+    }
+
+    fn lower(&mut self, ends: [f64; 2], bend: f64) {
+        let [first, last] = ends.map(|end| self.part(end));
+        for least in &mut self.least[first..=last] {
+            *least = least.min(bend);
+        }
+    }
+
+    /// The least between two positions.
+    pub(in super::super) fn between(&self, ends: [f64; 2]) -> f64 {
+        let [first, last] = ends.map(|end| self.part(end));
+        self.least[first..=last].iter().copied().fold(0.0, f64::min)
+    }
+}
+
+/// The part that a number of parts ends in.
+#[inline]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // what is below 0 is 0
+fn part(parts: f64) -> usize {
+    (parts as u32 as usize).min(PARTS - 1)
+}
 
 impl Outline<'_> {
     /// Visits all knots of splines that lie on the path: the roll angle, and the second derivative of the profile there over the position,
@@ -32,42 +68,71 @@ impl Outline<'_> {
         Some(())
     }
 
-    /// The least second derivative of a spline in each of equal parts of the path \[1/m\], not above 0; none where a part of the profile
-    /// does not know its own.
-    pub(in super::super) fn least_bends(&self) -> Option<[f64; PARTS]> {
-        let mut least = [0.0_f64; PARTS];
-        if !self.is_sampled {
-            return Some(least);
-        }
+    /// How far it bends back in parts of the path, and on how many stretches by more than `most` \[1/m\], which begin a part from each other:
+    /// what rings about a kink is one.
+    pub(in super::super) fn least_bends(&self, most: f64) -> Back {
         let (from, to) = (self.facing.start, self.facing.end);
+        let per_length = PARTS as f64 / (to - from);
+        let mut back = Back { least: [0.0; PARTS], crests: 0, from, per_length };
         let [at_zero, rate] = self.rolls;
-        // Parts in a roll angle, and the first one's begin.
-        let per_part = PARTS as f64 / (to - from);
-        let (per_roll, begin) = (per_part / rate, at_zero + rate * from);
-        self.visit_bends(|roll, bend| {
+        let (per_roll, begin) = (per_length / rate, at_zero + rate * from);
+        let (mut on_crest, mut last) = (false, f64::INFINITY);
+        let known = self.visit_bends(|roll, bend| {
             if bend >= 0.0 {
+                on_crest = false;
                 return;
             }
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a share
-            let part = (((roll - begin) * per_roll) as u32 as usize).min(PARTS - 1);
-            least[part] = if bend < least[part] { bend } else { least[part] };
-        })?;
-        Some(least)
+            let parts = (roll - begin) * per_roll;
+            let least = &mut back.least[part(parts)];
+            *least = if bend < *least { bend } else { *least };
+            let is_crest = bend < -most;
+            if is_crest && !on_crest && (parts - last).abs() > 1.0 {
+                (back.crests, last) = (back.crests + 1, parts);
+            }
+            on_crest = is_crest;
+        });
+        if known.is_none() {
+            return Back { least: [f64::NEG_INFINITY; PARTS], crests: 0, ..back };
+        }
+        for cut in self.kinks_back() {
+            back.lower([cut, cut], f64::NEG_INFINITY);
+        }
+        for (piece, ends) in
+            self.pieces.iter().zip(self.cuts.windows(2)).filter(|(piece, _)| piece.shape == Convexity::Other)
+        {
+            let bend = piece.quadratic.map_or(f64::NEG_INFINITY, |quadratic| 2.0 * quadratic.coefficients[2]);
+            back.lower([ends[0], ends[1]], bend);
+        }
+        back
     }
 
-    /// On how many stretches it bends back by more than that \[1/m\], which begin a part of the path from each other: what rings about a kink is
-    /// one. None where a part of it does not know its own.
-    pub(in super::super) fn crests(&self, most: f64) -> usize {
-        let apart = self.rolls[1].abs() * (self.facing.end - self.facing.start) / PARTS as f64;
-        let (mut crests, mut on_crest, mut last) = (0, false, f64::INFINITY);
-        let known = self.visit_bends(|roll, bend| {
-            let bends_back = bend < -most;
-            if bends_back && !on_crest && (roll - last).abs() > apart {
-                (crests, last) = (crests + 1, roll);
+    /// Visits the ends of stretches of positions, ascending from where it begins, with what it is no less than on each \[m\], but for so much.
+    pub(in super::super) fn visit_least(&self, negligible: f64, mut visit: impl FnMut(f64, f64)) {
+        if let Some(spline) = &self.spline {
+            let [at_zero, rate] = self.rolls;
+            let per_rate = 1.0 / rate;
+            let [low, high] = spline.ends();
+            visit((low - at_zero) * per_rate, spline.value(low));
+            spline.visit_least(negligible, |roll, least| visit((roll - at_zero) * per_rate, least));
+            visit(self.facing.end, spline.value(high));
+            return;
+        }
+        let mut knots: Vec<f64> = self.parts.iter().flat_map(Section::knots).map(|roll| self.position(*roll)).collect();
+        knots.sort_by(f64::total_cmp);
+        for (piece, ends) in self.cuts.windows(2).enumerate() {
+            let samples = if self.pieces[piece].quadratic.is_some() { SAMPLES } else { super::WAVE_SAMPLES };
+            let mut places: Vec<f64> = (0..=samples).map(|at| share(ends, at, samples)).collect();
+            places.extend(knots.iter().filter(|knot| **knot > ends[0] && **knot < ends[1]));
+            places.sort_by(f64::total_cmp);
+            let rates: Vec<[f64; 3]> = places.iter().map(|place| self.rates(*place, piece)).collect();
+            for (places, rates) in places.windows(2).zip(rates.windows(2)) {
+                // As of a cubic, in Bernstein's form.
+                let third = (places[1] - places[0]) * (1.0 / 3.0);
+                let [[before, rise, _], [behind, fall, _]] = [rates[0], rates[1]];
+                let least = before.min(behind).min(before + third * rise).min(behind - third * fall);
+                visit(places[1], least);
             }
-            on_crest = bends_back;
-        });
-        if known.is_some() { crests } else { 0 }
+        }
     }
 
     /// The least second derivative anywhere \[1/m\], not above 0, if it is known at once.
@@ -104,10 +169,11 @@ impl Outline<'_> {
         [depth, slope * rate, bend * rate * rate]
     }
 
-    /// By how much the slope grows at a cut, at the most, not below 0.
-    pub(in super::super) fn most_kink(&self) -> f64 {
-        let kink = |cut: usize| self.rates(self.cuts[cut], cut)[1] - self.rates(self.cuts[cut], cut - 1)[1];
-        (1..self.pieces()).map(kink).fold(0.0, f64::max)
+    /// The cuts at which the slope grows, and by how much.
+    pub(in super::super) fn kinks(&self) -> Vec<(f64, f64)> {
+        let slope = |cut: usize, piece: usize| self.rates(self.cuts[cut], piece)[1];
+        let kinks = (1..self.pieces()).map(|cut| (self.cuts[cut], slope(cut, cut) - slope(cut, cut - 1)));
+        kinks.filter(|(_, kink)| *kink > 0.0).collect()
     }
 
     /// How short its waves are: over 2π of what is one spline, and the distance of knots of several.

@@ -2,10 +2,12 @@
 //!
 //! The separation is convex along the flanks too: where both hulls and it together grow, they go on growing. Must not know: places.
 
-use super::depths::{Depths, TOGETHER};
+use super::super::outline::Outline;
 
 /// Parts of a flank.
 const PARTS: usize = 64;
+/// How much lower than the depths it may be for being found sooner \[m\].
+const NEGLIGIBLE: f64 = 2e-8;
 
 /// Straight on equal parts of the flank.
 #[derive(Clone, Debug)]
@@ -18,23 +20,30 @@ pub(super) struct Hull {
 }
 
 impl Hull {
-    /// Of a flank between these lengths.
-    pub(super) fn new<'a>([from, to]: [f64; 2], tables: impl Iterator<Item = &'a Depths>) -> Self {
+    /// Of a flank with this base radius, over its own roll length, between these lengths.
+    #[allow(clippy::cast_possible_truncation)] // of single precision
+    pub(super) fn new(flank: &Outline, base_radius: f64, [from, to]: [f64; 2]) -> Self {
         let per_length = PARTS as f64 / (to - from);
+        let (begin, per_square) = (from * per_length, 0.5 * per_length / base_radius);
         let mut values = [[f32::INFINITY, 0.0]; PARTS + 1];
-        for depths in tables {
-            let (begin, parts) = ((depths.first - from) * per_length, depths.step * per_length);
-            for (group, least) in depths.least().enumerate() {
-                // From the place before to the one behind.
-                let first = begin + parts * ((group * TOGETHER) as f64 - 1.0);
-                let last = first + parts * (TOGETHER + 1) as f64;
-                let (first, last) = if parts > 0.0 { (first, last) } else { (last, first) };
-                // A straight line is no higher than the higher one of its ends.
-                for value in &mut values[part(first)..part(last) + 2] {
-                    value[0] = if least < value[0] { least } else { value[0] };
-                }
+        // A straight line is no higher than the higher one of its ends.
+        let mut lower = |[first, last]: [usize; 2], least: f64| {
+            for value in &mut values[first..last + 2] {
+                value[0] = value[0].min(least as f32);
             }
-        }
+        };
+        let (mut first, mut lowest, mut up_to) = (0, f64::INFINITY, 0.0);
+        flank.visit_least(NEGLIGIBLE, |end, least| {
+            lowest = if least < lowest { least } else { lowest };
+            if end < up_to {
+                return;
+            }
+            let last = part(per_square * end * end - begin);
+            lower([first, last], lowest);
+            (first, lowest) = (last, least);
+            up_to = ((begin + last as f64 + 1.0) / per_square).sqrt();
+        });
+        lower([first, PARTS - 1], lowest);
         lower_hull(&mut values);
         Self { first: from, per_length, values }
     }

@@ -8,6 +8,7 @@
 use super::super::outline::Outline;
 use super::depths::{Depths, LANES, along};
 use super::hull::Hull;
+use super::line::{Line, Pair};
 use super::near::Here;
 use super::steps::reach;
 
@@ -34,20 +35,16 @@ impl Flanks {
     }
 }
 
-/// What all scans of two flanks have in common.
-#[derive(Clone, Debug)]
-pub(super) struct Pair {
-    pub(super) base_radii: [f64; 2],
-    /// Between which lengths from its base circle each flank has points.
-    pub(super) ranges: [[f64; 2]; 2],
-    /// What depths are no less than, over those lengths.
-    pub(super) hulls: [Hull; 2],
-}
-
 impl Pair {
     /// Tables about roll lengths at which both flanks are nearest to each other, as far as anything there may be lower.
-    pub(super) fn beside(&self, outlines: [&Outline; 2], met: [[f64; 2]; 2], here: &Here, step: f64) -> Flanks {
-        let [pinion, gear] = &self.hulls;
+    pub(super) fn beside(
+        &self,
+        (outlines, hulls): ([&Outline; 2], &[Hull; 2]),
+        met: [[f64; 2]; 2],
+        here: &Here,
+        step: f64,
+    ) -> Flanks {
+        let [pinion, gear] = hulls;
         // Farther along both they stand apart by as much more as if they touched here, or by more than that.
         let lower = here.rates[0] - here.apart - f64::from(pinion.least()) - f64::from(gear.least());
         let [down, up] = reach(self.base_radii, met[0], lower.max(0.0));
@@ -61,93 +58,56 @@ impl Pair {
     }
 }
 
-/// Both flanks at one path position.
+/// Places at one path position.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scan<'a> {
-    pair: &'a Pair,
+    pub(super) line: Line<'a>,
     flanks: &'a Flanks,
-    /// Roll lengths at the nominal point.
-    nominal: [f64; 2],
-    /// What both lengths along the flanks add up to.
-    sum: f64,
+    hulls: &'a [Hull; 2],
     /// By how many places that of the gear is ahead of the pinion's, and by which share of a step more.
     ahead: isize,
     share: f32,
     /// For the separation at places: of each flank how the square of the roll length grows in a step, the nominal roll length, and what counts
-    /// for the square and the third power of the distance from it; and beyond the ends of contact what it is more.
+    /// for the square and the third power of the distance from it; and what it is more.
     turns: [[f32; 4]; 2],
     more: f32,
-    /// The separation for which places are beside each other, by what length those of the pinion are farther for that, and by how many steps
-    /// roll lengths grow for what it is more.
+    /// The separation for which places are beside each other, and by how many steps roll lengths grow for what it is more.
     aligned: f32,
-    shift: f64,
     growths: [f32; 2],
-    /// Between which lengths along the pinion's flank both flanks have points, and between which numbers of places.
-    pub(super) range: [f64; 2],
+    /// Between which numbers of places both flanks have points.
     pub(super) numbers: [f64; 2],
 }
 
 impl<'a> Scan<'a> {
-    /// `nominal` are the roll lengths of pinion and gear at the nominal point. None where the flanks have no place in common.
     #[inline]
-    pub(super) fn new(pair: &'a Pair, flanks: &'a Flanks, nominal: [f64; 2]) -> Option<Self> {
-        let Pair { base_radii, ranges: [pinion, gear], .. } = pair;
-        let step = flanks.step;
-        let per_step = 1.0 / step;
-        let per_radius = base_radii.map(|radius| 1.0 / radius);
-        let per_square = per_radius.map(|per| per * per);
-        let along = |at: usize| 0.5 * nominal[at] * nominal[at] * per_radius[at];
+    pub(super) fn new(line: Line<'a>, flanks: &'a Flanks, hulls: &'a [Hull; 2]) -> Self {
+        let Flanks { depths: [pinion, gear], step } = flanks;
+        let ahead = (pinion.first + gear.first - line.beside) / step + POSITIVE as f64;
+        let whole = positive(ahead);
+        let (base_radii, turns) = (line.pair.base_radii, line.turns());
         let mut scan = Self {
-            pair,
+            line,
             flanks,
-            nominal,
-            sum: along(0) + along(1),
-            ahead: 0,
-            share: 0.0,
+            hulls,
+            ahead: whole.cast_signed() - POSITIVE.cast_signed(),
+            share: single(ahead - whole as f64),
             turns: [0, 1].map(|at| {
                 let growth = if at == 0 { 2.0 } else { -2.0 } * base_radii[at] * step;
-                let [square, cube] = [0.5 * nominal[at] * per_square[at], per_square[at] * (1.0 / 3.0)];
-                [growth, nominal[at], square, cube].map(single)
+                [growth, line.nominal[at], turns[at][0], turns[at][1]].map(single)
             }),
-            more: 0.0,
-            aligned: 0.0,
-            shift: 0.0,
-            growths: [0, 1].map(|at| single(nominal[at] * per_radius[at] * per_step)),
-            range: [0.0; 2],
+            more: single(line.more),
+            aligned: single(line.aligned),
+            growths: [0, 1].map(|at| single(line.nominal[at] / (base_radii[at] * step))),
             numbers: [0.0; 2],
         };
-        let sum = scan.sum;
-        scan.range = [larger(pinion[0], sum - gear[1]), smaller(pinion[1], sum - gear[0])];
-        if scan.range[0] > scan.range[1] {
-            return None;
-        }
-        scan.align(sum);
-        Some(scan)
-    }
-
-    /// The same on other tables.
-    pub(super) fn on<'b>(self, flanks: &'b Flanks) -> Scan<'b>
-    where
-        'a: 'b,
-    {
-        Scan { flanks, ..self }
-    }
-
-    /// Lays places of both flanks beside each other whose lengths add up to this.
-    #[inline]
-    fn align(&mut self, sum: f64) {
-        let Flanks { depths: [pinion, gear], step } = self.flanks;
-        let ahead = (pinion.first + gear.first - sum) / step + POSITIVE as f64;
-        let whole = positive(ahead);
-        (self.ahead, self.share) = (whole.cast_signed() - POSITIVE.cast_signed(), single(ahead - whole as f64));
-        self.numbers = self.range.map(|place| self.number(place));
+        scan.numbers = line.range.map(|place| scan.number(place));
+        scan
     }
 
     /// The number of the nominal point.
     #[inline]
     pub(super) fn nominal(&self) -> f64 {
-        let [radius, _] = self.pair.base_radii;
-        self.number(0.5 * self.nominal[0] * self.nominal[0] / radius)
+        self.number(self.line.nominal())
     }
 
     /// The first and the last place that both flanks have depths of, and a block with one more on either side.
@@ -158,43 +118,14 @@ impl<'a> Scan<'a> {
         [1.max(1 - self.ahead), (pinion - 1).min(gear - 1 - self.ahead)]
     }
 
-    /// Roll lengths of pinion and gear at a length along the pinion's flank, and whether that of the pinion has grown.
-    #[inline]
-    pub(super) fn roll_lengths(&self, place: f64) -> ([f64; 2], bool) {
-        let [pinion, gear] = self.pair.base_radii;
-        let roll_lengths = [root(2.0 * pinion * place), root(2.0 * gear * (self.sum - place))];
-        (roll_lengths, roll_lengths[0] >= self.nominal[0])
-    }
-
-    /// Counts the separation, and by how much the roll length of the flank that is met is more, from what they are at these roll lengths, which
-    /// are far from the nominal ones.
-    pub(super) fn count_from(&mut self, roll_lengths: [f64; 2], separation: f64, met: [f64; 2]) {
-        let [pinion, gear] = [0, 1].map(|at| {
-            let [_, _, square, cube] = self.turns[at].map(f64::from);
-            let off = roll_lengths[at] - self.nominal[at];
-            off * off * (square + cube * off)
-        });
-        self.more = single(separation - pinion - gear);
-        let along = |at: usize, roll_length: f64| 0.5 * roll_length * roll_length / self.pair.base_radii[at];
-        self.shift = along(0, met[0]) - along(0, roll_lengths[0]);
-        let sum = along(0, met[0]) + along(1, met[1]);
-        // Both have points at the places that lie beside each other now.
-        let [pinion, gear] = self.pair.ranges;
-        self.range = [
-            larger(self.range[0], larger(pinion[0], sum - gear[1]) - self.shift),
-            smaller(self.range[1], smaller(pinion[1], sum - gear[0]) - self.shift),
-        ];
-        self.align(sum);
-        self.aligned = single(separation);
-    }
-
     /// How far the flanks stand apart at places from this one on, and by how much the roll length of the pinion's has grown.
-    #[inline]
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // as in `Look`
     fn separations(&self, first: isize) -> [[f32; LANES]; 2] {
-        let [pinion, gear] = self.pair.base_radii;
+        let [pinion, gear] = self.line.pair.base_radii;
         let place = self.at(first as f64);
         // In single precision, in which roll lengths are known to a nanometre, and separations to a picometre.
-        let squares = [2.0 * pinion * place, 2.0 * gear * (self.sum - place)].map(single);
+        let squares = [2.0 * pinion * place, 2.0 * gear * (self.line.sum - place)].map(single);
         let (mut apart, mut grown) = ([0.0; LANES], [0.0; LANES]);
         for (at, steps) in PLACES.into_iter().enumerate() {
             let ([one, off], [other, _]) =
@@ -205,7 +136,8 @@ impl<'a> Scan<'a> {
     }
 
     /// The gap at places from this one on, and how far the flanks stand apart there; without bound where both flanks have none.
-    #[inline]
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // as in `Look`
     pub(super) fn values(&self, first: isize) -> [[f32; LANES]; 2] {
         let [pinion, gear] = &self.flanks.depths;
         let number = first.cast_unsigned();
@@ -264,32 +196,28 @@ impl<'a> Scan<'a> {
     fn least_from(&self, number: isize, [apart, before]: [f32; 2], way: f32) -> f32 {
         let [pinion, gear] = &self.flanks.depths;
         let step = self.flanks.step;
-        let [own, other] = &self.pair.hulls;
+        let [own, other] = self.hulls;
         let [own, grows] = own.at(pinion.first + step * number as f64);
         let [other, falls] = other.at(gear.first - step * ((number + self.ahead) as f64 + f64::from(self.share)));
         let along = way * single(step) * (grows - falls);
         if apart - before + along < 0.0 { f32::NEG_INFINITY } else { apart + own + other }
     }
 
-    /// The distance of places.
-    pub(super) fn step(&self) -> f64 {
-        self.flanks.step
-    }
-
     /// The length along the pinion's flank at a number of a place.
     #[inline]
     pub(super) fn at(&self, number: f64) -> f64 {
-        self.flanks.depths[0].first + self.flanks.step * number - self.shift
+        self.flanks.depths[0].first + self.flanks.step * number - self.line.shift
     }
 
     #[inline]
     fn number(&self, place: f64) -> f64 {
-        (place + self.shift - self.flanks.depths[0].first) / self.flanks.step
+        (place + self.line.shift - self.flanks.depths[0].first) / self.flanks.step
     }
 }
 
 /// What one flank turns by, and how much longer its roll length is, from the square of that at a place and as in [`Scan`].
-#[inline]
+#[inline(always)]
+#[allow(clippy::inline_always)] // as in `Look`
 fn part(square: f32, [growth, nominal, squares, cubes]: [f32; 4], steps: f32) -> [f32; 2] {
     let square = square + growth * steps;
     let off = (if square > 0.0 { square } else { 0.0 }).sqrt() - nominal;
@@ -307,20 +235,4 @@ pub(super) fn single(value: f64) -> f32 {
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 pub(super) fn positive(number: f64) -> usize {
     number as u32 as usize
-}
-
-/// As these are one instruction.
-#[inline]
-fn larger(one: f64, other: f64) -> f64 {
-    if one > other { one } else { other }
-}
-
-#[inline]
-fn smaller(one: f64, other: f64) -> f64 {
-    if one < other { one } else { other }
-}
-
-#[inline]
-fn root(square: f64) -> f64 {
-    larger(square, 0.0).sqrt()
 }

@@ -3,9 +3,10 @@
 //! Waves are as long over the roll length everywhere; along the flank, in which places of both flanks are in equal steps, they are the shorter
 //! the nearer it is to the base circle. Must not know: depths.
 
-use super::super::outline::Outline;
+use super::super::bends::LEFT;
+use super::super::outline::{Back, Outline};
 use super::depths::along;
-use crate::gear::geometry::GearPair;
+use super::line::Pair;
 
 /// By how much the gap may be lower between two places of the scan than at both \[m\], where it bends most: it says how near they are.
 const BETWEEN: f64 = 1200e-9;
@@ -26,16 +27,12 @@ const NARROWER: usize = 2;
 /// Both flanks, as far as it counts for steps.
 #[derive(Clone, Debug)]
 pub(super) struct Steps {
-    pub(super) base_radii: [f64; 2],
-    /// Between which lengths from its base circle each flank has points.
-    pub(super) ranges: [[f64; 2]; 2],
-    tangent_length: f64,
-    /// The least and the most roll length of the pinion \[m\].
-    pub(super) roll_lengths: [f64; 2],
-    /// The most that each bends and kinks over its roll length, and how far places may be from each other for its waves.
+    pair: Pair,
+    /// The most that each bends over its roll length, and how far places may be from each other for its waves.
     bends: [f64; 2],
-    kinks: [f64; 2],
     waves: [f64; 2],
+    /// At which lengths from its base circle the slope of each grows, and by how much.
+    kinks: [Vec<(f64, f64)>; 2],
     /// What depths are between.
     cells: [Cells; 2],
     /// The fewest and the most steps are of this length.
@@ -97,49 +94,46 @@ impl Need {
 
 impl Steps {
     /// Of flanks over their own roll lengths.
-    pub(super) fn new(pair: &GearPair, outlines: [&Outline; 2]) -> Self {
-        let base_radii = [pair.pinion.base_radius, pair.gear.base_radius];
-        // A tip may reach beyond the other base circle, where that flank has no points.
-        let roll_lengths = outlines.map(|outline| outline.range().map(|roll_length| roll_length.max(0.0)));
-        let ranges = [0, 1].map(|at| roll_lengths[at].map(|roll_length| along(roll_length, base_radii[at])));
-        let length = (ranges[0][1] - ranges[0][0]).max(ranges[1][1] - ranges[1][0]);
+    pub(super) fn new(pair: Pair, outlines: [&Outline; 2]) -> Self {
+        let kinks = |at: usize| {
+            let kinks = outlines[at].kinks().into_iter();
+            kinks.map(|(place, kink)| (along(place, pair.base_radii[at]), kink)).collect()
+        };
         Self {
-            base_radii,
-            ranges,
-            tangent_length: pair.tangent_length,
-            roll_lengths: roll_lengths[0],
+            pair,
             bends: outlines.map(Outline::most_bend),
-            kinks: outlines.map(Outline::most_kink),
+            kinks: [kinks(0), kinks(1)],
             waves: outlines.map(|outline| SHORTEST * outline.shortest()),
-            cells: [0, 1].map(|at| Cells::new(outlines[at], base_radii[at], ranges[at])),
-            within: [length / MOST, length / FEWEST],
+            cells: [0, 1].map(|at| Cells::new(outlines[at], pair.base_radii[at], pair.ranges[at])),
+            within: [pair.longest() / MOST, pair.longest() / FEWEST],
         }
     }
 
     /// On so many equal parts of the path.
     pub(super) fn of<const PARTS: usize>(&self) -> [Need; PARTS] {
-        let [from, to] = self.roll_lengths;
+        let [from, to] = self.pair.roll_lengths[0];
         std::array::from_fn(|part| {
             let lengths = self.beside([part, part + 1].map(|end| from + (to - from) * end as f64 / PARTS as f64));
             // All of it is the most at one of the ends.
-            let [one, other] = lengths[0].map(|length| self.at((2.0 * self.base_radii[0] * length).sqrt()));
-            Need { step: one[0].min(other[0]), bend: one[1].max(other[1]), kink: one[2].max(other[2]), lengths }
+            let [one, other] = lengths[0].map(|length| self.at((2.0 * self.pair.base_radii[0] * length).sqrt()));
+            Need { step: one[0].min(other[0]), bend: one[1].max(other[1]), kink: self.kink(lengths), lengths }
         })
     }
 
     /// Between which lengths along each flank the gap may be lowest between two path positions: where the flanks stand apart by no more than depths at
     /// the nominal points exceed the least ones there.
     fn beside(&self, ends: [f64; 2]) -> [[f64; 2]; 2] {
-        let nominal = [ends, [self.tangent_length - ends[1], self.tangent_length - ends[0]]];
-        let nominal = [0, 1].map(|at| nominal[at].map(|roll_length| along(roll_length.max(0.0), self.base_radii[at])));
+        let nominal = [ends, [self.pair.tangent_length - ends[1], self.pair.tangent_length - ends[0]]];
+        let nominal =
+            [0, 1].map(|at| nominal[at].map(|roll_length| along(roll_length.max(0.0), self.pair.base_radii[at])));
         let most = self.cells[0].between(nominal[0])[1] + self.cells[1].between(nominal[1])[1];
-        let mut lengths = self.ranges;
+        let mut lengths = self.pair.ranges;
         for _ in 0..NARROWER {
             let least = self.cells[0].between(lengths[0])[0] + self.cells[1].between(lengths[1])[0];
             let apart = MARGIN * f64::from(most - least);
-            let [one, other] = ends.map(|s| reach(self.base_radii, [s, self.tangent_length - s], apart));
+            let [one, other] = ends.map(|s| reach(self.pair.base_radii, [s, self.pair.tangent_length - s], apart));
             let [down, up] = [0, 1].map(|way| one[way].max(other[way]));
-            let inside = |at: usize, length: f64| length.clamp(self.ranges[at][0], self.ranges[at][1]);
+            let inside = |at: usize, length: f64| length.clamp(self.pair.ranges[at][0], self.pair.ranges[at][1]);
             lengths = [
                 [inside(0, nominal[0][0] - down), inside(0, nominal[0][1] + up)],
                 [inside(1, nominal[1][0] - up), inside(1, nominal[1][1] + down)],
@@ -148,17 +142,44 @@ impl Steps {
         lengths
     }
 
-    /// How far places may be from each other at a roll length of the pinion, and by how much the gap bends and its slope grows.
-    fn at(&self, s: f64) -> [f64; 3] {
-        let [from, to] = self.roll_lengths;
+    /// Whether flanks that bend back so far do so by more than the separation bends, anywhere between these lengths along both.
+    pub(super) fn are_rough(&self, back: &[Back; 2], lengths: [[f64; 2]; 2]) -> bool {
+        let least = NEAREST * self.pair.tangent_length;
+        let ends =
+            [0, 1].map(|at| lengths[at].map(|length| (2.0 * self.pair.base_radii[at] * length).sqrt().max(least)));
+        let of_flanks: f64 = (0..2)
+            .map(|at| {
+                let rate = self.pair.base_radii[at] / ends[at][0];
+                back[at].between(ends[at]) * rate * rate
+            })
+            .sum();
+        -of_flanks > (1.0 - LEFT) * (1.0 / ends[0][1] + 1.0 / ends[1][1])
+    }
+
+    /// By how much the slope of the gap grows anywhere between these lengths along both flanks.
+    fn kink(&self, lengths: [[f64; 2]; 2]) -> f64 {
+        let of = |at: usize| {
+            let [low, high] = lengths[at];
+            let inside = self.kinks[at].iter().filter(|(place, _)| *place >= low && *place <= high);
+            // How roll lengths grow.
+            let radius = self.pair.base_radii[at];
+            let least = NEAREST * self.pair.tangent_length;
+            inside.map(|(place, kink)| kink * radius / (2.0 * radius * place).sqrt().max(least)).fold(0.0, f64::max)
+        };
+        of(0) + of(1)
+    }
+
+    /// How far places may be from each other at a roll length of the pinion, and by how much the gap bends.
+    fn at(&self, s: f64) -> [f64; 2] {
+        let [from, to] = self.pair.roll_lengths[0];
         // A flank may begin at its base circle.
-        let s = s.clamp(from, to).clamp(NEAREST * self.tangent_length, (1.0 - NEAREST) * self.tangent_length);
+        let s = s.clamp(from, to).clamp(NEAREST * self.pair.tangent_length, (1.0 - NEAREST) * self.pair.tangent_length);
         // How roll lengths grow.
-        let [one, two] = [self.base_radii[0] / s, self.base_radii[1] / (self.tangent_length - s)];
-        let of_separation = one / self.base_radii[0] + two / self.base_radii[1];
+        let [one, two] = [self.pair.base_radii[0] / s, self.pair.base_radii[1] / (self.pair.tangent_length - s)];
+        let of_separation = one / self.pair.base_radii[0] + two / self.pair.base_radii[1];
         let bend = self.bends[0] * one * one + self.bends[1] * two * two + of_separation;
         let step = (4.0 * BETWEEN / bend).sqrt().min(self.waves[0] / one).min(self.waves[1] / two);
-        [step.clamp(self.within[0], self.within[1]), bend, self.kinks[0] * one + self.kinks[1] * two]
+        [step.clamp(self.within[0], self.within[1]), bend]
     }
 }
 

@@ -114,6 +114,46 @@ fn the_gap_of_rough_flanks_is_the_least_of_a_dense_scan() {
     }
 }
 
+/// Tier: second method; traces that end before both ends of their flanks, where they are held, under reliefs that are drawn and start with a
+/// kink: no more than 20 pm above the scan, and below it by what its steps miss beside a kink.
+#[test]
+fn the_gap_of_traces_beside_drawn_reliefs_is_the_least_of_a_dense_scan() {
+    let (pair, mut random) = (pair(), Random::new(29));
+    let kinds = [
+        Beside::Nothing,
+        Beside::Waves(2e-6, 4e-3),
+        Beside::Waves(0.3e-6, 0.5e-3),
+        Beside::Waves(1e-6, 0.3e-3),
+        Beside::Noise(0.5e-6),
+    ];
+    let mut designs = Vec::new();
+    for (kind, curve) in kinds.into_iter().flat_map(|kind| [(kind, Curve::Linear), (kind, Curve::Parabolic)]) {
+        let mut design = Design::default();
+        for (gears, side) in [(Gears::Pinion, Side::Pinion), (Gears::Gear, Side::Gear)] {
+            let mut trace = kind.trace(&pair, side, &Design::default(), &mut random);
+            let inner = 20..trace.deviations.len() - 15;
+            trace.roll_lengths = trace.roll_lengths.map(|lengths| lengths[inner.clone()].to_vec());
+            trace.deviations = trace.deviations[inner].to_vec();
+            design.add(gears, &trace, &pair).unwrap();
+            let (amount, start) =
+                (Amount::Depth(random.between(2e-6, 20e-6)), Start::Length(random.between(1e-3, 5e-3)));
+            let relief = TipRelief { amount, start, counted_from: FromTip::Tip, curve };
+            design.add(gears, &relief, &pair).unwrap();
+        }
+        designs.push(design);
+    }
+    let profiles: Vec<_> = designs.iter().map(|design| design.profiles(0.0)).collect();
+    let gaps: Vec<Gaps> = profiles.iter().map(|profiles| Gaps::new(&pair, profiles)).collect();
+    let (from, to) = (pair.start_of_contact - 0.7e-3, pair.end_of_contact + 0.7e-3);
+    for place in 0..60 {
+        let s = from + (to - from) * (f64::from(place) + random.share()) / 60.0;
+        for (at, (gaps, exact)) in gaps.iter().zip(scanned(&pair, &designs, s, FAR)).enumerate() {
+            let off = gaps.at(s).unwrap() - exact;
+            assert!(off < 2e-11 && off > -2e-9, "{:?} at {s}: {off:e}", kinds[at / 2]);
+        }
+    }
+}
+
 /// A pair of gears as they are cut, of a random module, tooth numbers and profile shifts; none where they do not run.
 fn random_pair(random: &mut Random) -> Option<GearPair> {
     let module = 1e-3 * libm::pow(2.0, random.between(0.0, 3.0));
