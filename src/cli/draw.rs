@@ -76,8 +76,8 @@ impl SourceCode for Shown {
 }
 
 /// The longest line that is shown whole, and how much of a longer one is shown on either side of the place \[bytes\].
-const LONGEST: usize = 160;
-const BESIDE: usize = 60;
+const LONGEST: usize = 120;
+const BESIDE: usize = 50;
 /// Where something is left out.
 const LEFT_OUT: &str = "…";
 
