@@ -116,7 +116,9 @@ impl Steps {
             let lengths = self.beside([part, part + 1].map(|end| from + (to - from) * end as f64 / PARTS as f64));
             // All of it is the most at one of the ends.
             let [one, other] = lengths[0].map(|length| self.at((2.0 * self.pair.base_radii[0] * length).sqrt()));
-            Need { step: one[0].min(other[0]), bend: one[1].max(other[1]), kink: self.kink(lengths), lengths }
+            // The outermost parts stand for what is beyond the ends of contact too, where flanks touch farther along them.
+            let touched = if part == 0 || part + 1 == PARTS { self.pair.ranges } else { lengths };
+            Need { step: one[0].min(other[0]), bend: one[1].max(other[1]), kink: self.kink(touched), lengths }
         })
     }
 
