@@ -27,8 +27,8 @@ pub struct Balance {
 }
 
 /// Equilibrium. `total` > 0, the smallest gap is 0; `coupling` is symmetric, by rows; its diagonal is what a spring's
-/// own load does to it beyond its response. Together they must be positive definite. `above` is where the search
-/// starts: an approach at which the springs carry `total` or more.
+/// own load does to it beyond its response. Together they must be positive definite. `above` > 0 is where the search
+/// starts: springs with smaller gaps carry load at first, best all that will, and few more.
 pub fn balance(springs: &impl Springs, gaps: &[f64], coupling: &[f64], total: f64, above: f64) -> Balance {
     newton(springs, gaps, coupling, total, above).unwrap_or_else(|| relaxed(springs, gaps, coupling, total, above))
 }

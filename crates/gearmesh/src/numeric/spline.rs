@@ -4,6 +4,7 @@
 //! off by fades by 2 − √3 from point to point. Source: de Boor, A Practical Guide to Splines, chapter IV. Must not know: what
 //! is interpolated.
 
+mod row;
 mod sum;
 #[cfg(test)]
 mod tests;
@@ -135,39 +136,6 @@ impl Spline {
         let [from, c0, c1, c2, c3] = *self.piece(x);
         let t = x - from;
         c0 + t * (c1 + t * (c2 + t * c3))
-    }
-
-    /// The values at so many places above 0 whose squares grow in equal steps, from that of `first` on, of single precision; outside of its
-    /// ends those at the ends.
-    #[must_use]
-    #[allow(clippy::cast_possible_truncation)] // of single precision
-    pub fn at_roots(&self, [first, step]: [f64; 2], count: usize) -> Vec<f32> {
-        let [low, high] = self.between;
-        let place = |at: usize| (first + step * at as f64).max(0.0).sqrt().clamp(low, high);
-        let interval = |place: f64| self.index.interval(self.pieces.len(), place, |at| self.pieces[at][0]);
-        let from = interval(place(0));
-        if interval(place(count)) - from > 2 * count {
-            return (0..count).map(|at| self.value(place(at)) as f32).collect();
-        }
-        let mut values = vec![self.value(high) as f32; count];
-        let (mut left, mut square) = (values.iter_mut(), first);
-        let held = self.value(low) as f32;
-        while square < low * low {
-            let Some(value) = left.next() else { return values };
-            *value = held;
-            square += step;
-        }
-        for (piece, end) in self.pieces[from..].iter().zip(&self.knots[from + 1..]) {
-            let [begin, c0, c1, c2, c3] = *piece;
-            let end = if *end < high { *end } else { high };
-            while square < end * end {
-                let Some(value) = left.next() else { return values };
-                let t = square.sqrt() - begin;
-                *value = (c0 + t * (c1 + t * (c2 + t * c3))) as f32;
-                square += step;
-            }
-        }
-        values
     }
 
     /// Visits the ends of stretches between its own ends, with what it is no less than on each, and not much more: the least of the points that

@@ -109,8 +109,8 @@ pub fn pressed(gaps: &[f64], spacing: f64) -> Option<f64> {
         .map(|apart| influences[apart] - if apart == 0 { own.compliance } else { 0.0 })
         .collect();
     let behind: Vec<f64> = open.iter().map(|(_, gap)| *gap).collect();
-    let above = 2.0 * influences[0];
-    let found = many_springs::balance(&own, &behind, &coupling, 1.0, above);
+    // As if they touched where they are nearer to each other than the edges of a parabola's contact are: nearly all that do.
+    let found = many_springs::balance(&own, &behind, &coupling, 1.0, 1.0);
     Some(found.approach + least - length)
 }
 

@@ -96,9 +96,15 @@ impl Uneven {
             end - whole - beyond
         });
         let places: Vec<f64> = even.iter().map(|place| place + shift).collect();
-        let real: Vec<f64> = places.iter().map(|place| height(centre + place) - floor).collect();
-        let parabola = |place: &f64| gap(centre + place).map_or(f64::INFINITY, |_| place * place);
-        let ideal: Vec<f64> = places.iter().map(parabola).collect();
+        let found: Vec<Option<f64>> = places.iter().map(|place| gap(centre + place)).collect();
+        let real: Vec<f64> = found.iter().map(|gap| gap.map_or(f64::INFINITY, |gap| gap - floor)).collect();
+        // Parabolas touch no farther out than they would alone, where both go on up to there.
+        let edge = 1.0 + 2.0 * spacing;
+        let goes_on = places.iter().zip(&found).all(|(place, gap)| gap.is_some() || place.abs() > edge);
+        let parabola = |(place, gap): (&f64, &Option<f64>)| {
+            if gap.is_some() && !(goes_on && place.abs() > edge) { place * place } else { f64::INFINITY }
+        };
+        let ideal: Vec<f64> = places.iter().zip(&found).map(parabola).collect();
         let change = pressed(&real, spacing).zip(pressed(&ideal, spacing)).map_or(0.0, |(real, ideal)| real - ideal);
         Self { change: change.abs(), apart: apart.0 }
     }

@@ -20,8 +20,10 @@ const PROBE: f64 = 1e-6;
 const PLACE: f64 = 1e-5;
 /// The same where there may be as many extrema as nodes, and how many of them are refined: those that nodes say are the highest. The
 /// nodes themselves miss more of the others.
-const ROUGH_PLACE: f64 = 1e-3;
-const ROUGH_MOST: usize = 2;
+const FEW_PLACE: f64 = 1e-3;
+const MOST: usize = 2;
+/// The same where there are more extrema than nodes, which miss 0.1 to 1 % of a peak-to-peak value.
+const ROUGH_PLACE: f64 = 3e-2;
 
 /// Nodes and weights on the unit interval.
 #[derive(Clone, Debug)]
@@ -114,8 +116,10 @@ impl Span {
 pub enum Refining {
     /// All that may be the largest or the smallest.
     Each,
-    /// Of a function that is rough between its nodes: the few that nodes say are.
+    /// Of a function with kinks between its nodes: the few that nodes say are.
     Few,
+    /// Of a function with more of them than nodes: the same few, and their places less closely.
+    Roughly,
 }
 
 /// A function over the whole cycle, by position.
@@ -199,7 +203,7 @@ impl Trace {
                 if topped || twin || low >= value || value + OVERSHOOT * (value - low) < best.value {
                     continue;
                 }
-                if refining == Refining::Few {
+                if refining != Refining::Each {
                     highest.push((value, span.pairs, near));
                     continue;
                 }
@@ -210,8 +214,9 @@ impl Trace {
             }
         }
         highest.sort_by(|one, other| other.0.total_cmp(&one.0));
-        for (_, pairs, near) in highest.into_iter().take(ROUGH_MOST) {
-            let found = near.maximum(ROUGH_PLACE, |position| sign * function(position, pairs));
+        let place = if refining == Refining::Roughly { ROUGH_PLACE } else { FEW_PLACE };
+        for (_, pairs, near) in highest.into_iter().take(MOST) {
+            let found = near.maximum(place, |position| sign * function(position, pairs));
             if found.1 > best.value {
                 best = Extremum { position: found.0, pairs, value: found.1 };
             }

@@ -12,6 +12,8 @@ use super::trace::{NODES, Refining, Span, Trace};
 const MOST_CUTS: usize = 24;
 /// How many positions there are for each crest at the least, where they follow rough flanks.
 const POSITIONS_PER_CREST: usize = 24;
+/// The fewest that see each of them.
+const POSITIONS_TO_SEE: usize = 2;
 /// Roundings of a path position, from the roll angle where a modification starts and back.
 const ROUNDINGS: f64 = 4.0;
 /// What the last of a span's polynomials may hold of the transmission error: quadrature is then good to about the square
@@ -29,9 +31,18 @@ impl LoadCase<'_> {
         self.flanks.crests() * POSITIONS_PER_CREST <= self.positions
     }
 
+    /// Whether positions see each crest of rough flanks. Among kinks that they do not see another one is none to cut at, nor to look for closely.
+    fn sees_crests(&self) -> bool {
+        self.flanks.crests() * POSITIONS_TO_SEE <= self.positions
+    }
+
     /// Which extrema of a curve are refined.
     pub(super) fn refining(&self) -> Refining {
-        if self.flanks.crests() == 0 { Refining::Each } else { Refining::Few }
+        match (self.flanks.crests(), self.sees_crests()) {
+            (0, _) => Refining::Each,
+            (_, true) => Refining::Few,
+            (_, false) => Refining::Roughly,
+        }
     }
 
     /// Visits the whole cycle in order, in smooth spans no longer than `longest` \[m\].
@@ -39,13 +50,14 @@ impl LoadCase<'_> {
         let closest = CLOSEST * self.cycle.period();
         let rounding = ROUNDINGS * f64::EPSILON * self.cycle.pair.tangent_length;
         let most_cuts = if self.follows_crests() { MOST_CUTS } else { 0 };
+        let breaks = if self.sees_crests() { &self.breaks[..] } else { &[] };
         // Of one span after the other.
         let mut states = [Equilibrium::NONE; NODES];
         for zone in &self.cycle.zones {
             let mut start = zone.start;
             // A steep relief makes much of a rounded position, so that where one starts the limit from inside is taken.
             let mut inwards = [0.0; 2];
-            let inside = self.breaks.iter().copied().filter(|cut| zone.end - cut > closest).chain([zone.end]);
+            let inside = breaks.iter().copied().filter(|cut| zone.end - cut > closest).chain([zone.end]);
             for end in inside {
                 if end - start <= closest {
                     continue;

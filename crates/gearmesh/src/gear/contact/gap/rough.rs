@@ -22,6 +22,8 @@ mod line;
 mod near;
 mod scan;
 mod steps;
+#[cfg(test)]
+mod tests;
 
 /// By how much the gap may still be lower between two places than a parabola through three tells, over how much it may be lower than at both.
 const LEFT: f64 = 0.5;
@@ -78,6 +80,13 @@ struct Search<'a, 'b> {
     waiting: [(f32, f64); WAITING],
     count: usize,
 }
+
+/// One for the first and the last place of a block with those beside it.
+const ENDS: [f32; LANES] = {
+    let mut ends = [0.0; LANES];
+    (ends[0], ends[LANES - 1]) = (1.0, 1.0);
+    ends
+};
 
 /// A look at places from this one on.
 struct Look<'s, 'a, 'b> {
@@ -189,7 +198,7 @@ impl Rough {
 
 impl Search<'_, '_> {
     #[allow(clippy::cast_possible_truncation)] // numbers of places
-    fn run(mut self) -> f64 {
+    fn run(&mut self) -> f64 {
         let width = BLOCK.cast_signed();
         let (ends, [lowest, highest]) = (self.scan.numbers, self.scan.known());
         let (first, last) = ((ends[0] as isize).max(lowest), (ends[1] as isize + 1).min(highest + width - 1));
@@ -197,23 +206,24 @@ impl Search<'_, '_> {
         if first > highest {
             return self.fall.least;
         }
-        let middle = (self.scan.nominal() as isize - width / 2).min(last + 1 - width).max(first);
+        let middle = (self.scan.nominal as isize - width / 2).min(last + 1 - width).max(first);
         let [mut down, mut up] = [middle, middle + width];
         let apart = self.look_at(middle);
-        let mut least = [self.scan.least_before(middle, &apart), self.scan.least_behind(middle + width - 1, &apart)];
+        let tangent = self.scan.tangent(middle + width / 2);
+        let mut least = [tangent.least_before(middle, &apart), tangent.least_behind(middle + width - 1, &apart)];
         // Both ways, until no place farther out can be the lowest.
         loop {
             let goes_on = [down > first && least[0] < self.seen, up <= last && least[1] < self.seen];
             if goes_on[0] {
                 down = (down - width).max(lowest);
                 let apart = self.look_at(down);
-                least[0] = self.scan.least_before(down, &apart);
+                least[0] = tangent.least_before(down, &apart);
             }
             if goes_on[1] {
                 let from = up.min(highest);
                 up = from + width;
                 let apart = self.look_at(from);
-                least[1] = self.scan.least_behind(up - 1, &apart);
+                least[1] = tangent.least_behind(up - 1, &apart);
             }
             if goes_on == [false; 2] {
                 break;
@@ -238,11 +248,8 @@ impl Search<'_, '_> {
     #[inline(always)]
     #[allow(clippy::inline_always)] // as in `Look`
     fn look_closely_at(&mut self, first: isize) -> [f32; LANES] {
-        let [mut values, apart] = self.scan.values(first - 1);
-        // A place is not as high in the next block, to the last bits: neither may leave the lowest one to the other.
-        values[0] += self.rounding;
-        values[LANES - 1] += self.rounding;
-        let mut low = low(&values, self.seen + self.part.dip);
+        let [values, apart] = self.scan.values(first - 1);
+        let mut low = low(&values, self.seen + self.part.dip, self.rounding);
         while low != 0 {
             self.offer(first - 1, low.trailing_zeros() as usize, &values);
             low &= low - 1;
@@ -294,15 +301,21 @@ impl Search<'_, '_> {
     }
 }
 
-/// A bit for each place that is lower than both beside it and than this.
+/// A bit for each place that is lower than both beside it and than this. A place is not as high in the next block, to the last bits, which is why those at the
+/// ends count for so much more: neither block may leave the lowest one to the other.
 #[inline(always)]
 #[allow(clippy::inline_always)] // as in `Look`
-fn low(values: &[f32; LANES], reach: f32) -> u32 {
+fn low(values: &[f32; LANES], reach: f32, rounding: f32) -> u32 {
+    // None at the ends is lower than both beside it.
+    let mut beside = [f32::NEG_INFINITY; LANES + 2];
+    for at in 0..LANES {
+        beside[at + 1] = values[at] + ENDS[at] * rounding;
+    }
     let mut bits = [0_u32; LANES];
-    for at in 1..LANES - 1 {
-        let [is_near, has_fallen, rises] =
-            [values[at] < reach, values[at] <= values[at - 1], values[at] < values[at + 1]].map(u32::from);
-        bits[at] = (is_near & has_fallen & rises) << at;
+    for (at, bit) in bits.iter_mut().enumerate() {
+        let [before, here, after] = [beside[at], beside[at + 1], beside[at + 2]];
+        let [is_near, has_fallen, rises] = [here < reach, here <= before, here < after].map(u32::from);
+        *bit = (is_near & has_fallen & rises) << at;
     }
     bits.iter().fold(0, |all, bit| all | bit)
 }

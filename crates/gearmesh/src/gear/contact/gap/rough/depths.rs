@@ -5,7 +5,7 @@
 use super::super::outline::Outline;
 
 /// Places that are looked at together, with one more on either side.
-pub(super) const LANES: usize = 16;
+pub(super) const LANES: usize = 32;
 pub(super) const BLOCK: usize = LANES - 2;
 /// Places more on either side: those of one flank lie beside those of the other.
 const BESIDE: usize = LANES + 4;

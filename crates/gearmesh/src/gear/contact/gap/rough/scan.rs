@@ -16,7 +16,14 @@ use super::steps::reach;
 const POSITIVE: usize = 1 << 20;
 
 /// The places of a block with their neighbours.
-const PLACES: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0];
+const PLACES: [f32; LANES] = {
+    let (mut places, mut at) = ([0.0; LANES], 1);
+    while at < LANES {
+        places[at] = places[at - 1] + 1.0;
+        at += 1;
+    }
+    places
+};
 
 /// Both flanks on a stretch of the path.
 #[derive(Clone, Debug)]
@@ -74,8 +81,40 @@ pub(super) struct Scan<'a> {
     /// The separation for which places are beside each other, and by how many steps roll lengths grow for what it is more.
     aligned: f32,
     growths: [f32; 2],
-    /// Between which numbers of places both flanks have points.
+    /// The number of the nominal point, and between which ones both flanks have points.
+    pub(super) nominal: f64,
     pub(super) numbers: [f64; 2],
+}
+
+/// A line that depths of both flanks together are nowhere lower than.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tangent {
+    /// A place and its value, and by how much it rises from place to place.
+    number: isize,
+    value: f32,
+    rise: f32,
+}
+
+impl Tangent {
+    /// What the gap is no less than before the first place of a block or behind its last one, where flanks stand apart so far in the block and beside it.
+    #[inline]
+    pub(super) fn least_before(&self, first: isize, apart: &[f32; LANES]) -> f32 {
+        self.least_from(first, [apart[1], apart[2]], -self.rise)
+    }
+
+    #[inline]
+    pub(super) fn least_behind(&self, last: isize, apart: &[f32; LANES]) -> f32 {
+        self.least_from(last, [apart[LANES - 2], apart[LANES - 3]], self.rise)
+    }
+
+    /// From a place on, where they stand apart by these at it and at the one before, and the line rises so; without bound where it may be any less: all of it
+    /// is convex.
+    #[inline]
+    #[allow(clippy::cast_precision_loss)] // numbers of places
+    fn least_from(&self, number: isize, [apart, before]: [f32; 2], rise: f32) -> f32 {
+        let line = self.value + self.rise * (number - self.number) as f32;
+        if apart - before + rise < 0.0 { f32::NEG_INFINITY } else { apart + line }
+    }
 }
 
 impl<'a> Scan<'a> {
@@ -98,16 +137,12 @@ impl<'a> Scan<'a> {
             more: single(line.more),
             aligned: single(line.aligned),
             growths: [0, 1].map(|at| single(line.nominal[at] / (base_radii[at] * step))),
+            nominal: 0.0,
             numbers: [0.0; 2],
         };
+        scan.nominal = scan.number(line.nominal());
         scan.numbers = line.range.map(|place| scan.number(place));
         scan
-    }
-
-    /// The number of the nominal point.
-    #[inline]
-    pub(super) fn nominal(&self) -> f64 {
-        self.number(self.line.nominal())
     }
 
     /// The first and the last place that both flanks have depths of, and a block with one more on either side.
@@ -118,21 +153,19 @@ impl<'a> Scan<'a> {
         [1.max(1 - self.ahead), (pinion - 1).min(gear - 1 - self.ahead)]
     }
 
-    /// How far the flanks stand apart at places from this one on, and by how much the roll length of the pinion's has grown.
+    /// How far the flanks stand apart at places from this one on.
     #[inline(always)]
     #[allow(clippy::inline_always)] // as in `Look`
-    fn separations(&self, first: isize) -> [[f32; LANES]; 2] {
+    fn separations(&self, first: isize) -> [f32; LANES] {
         let [pinion, gear] = self.line.pair.base_radii;
         let place = self.at(first as f64);
         // In single precision, in which roll lengths are known to a nanometre, and separations to a picometre.
         let squares = [2.0 * pinion * place, 2.0 * gear * (self.line.sum - place)].map(single);
-        let (mut apart, mut grown) = ([0.0; LANES], [0.0; LANES]);
-        for (at, steps) in PLACES.into_iter().enumerate() {
-            let ([one, off], [other, _]) =
-                (part(squares[0], self.turns[0], steps), part(squares[1], self.turns[1], steps));
-            (apart[at], grown[at]) = (one + other + self.more, off);
+        let mut apart = [0.0; LANES];
+        for (apart, steps) in apart.iter_mut().zip(PLACES) {
+            *apart = part(squares[0], self.turns[0], steps) + part(squares[1], self.turns[1], steps) + self.more;
         }
-        [apart, grown]
+        apart
     }
 
     /// The gap at places from this one on, and how far the flanks stand apart there; without bound where both flanks have none.
@@ -143,31 +176,19 @@ impl<'a> Scan<'a> {
         let number = first.cast_unsigned();
         let ahead = number.wrapping_add_signed(self.ahead);
         let (pinion, bends, gear) = (pinion.from(number), gear.bends_from(ahead), gear.from(ahead));
-        let [apart, grown] = self.separations(first);
-        let mut values = apart;
+        let apart = self.separations(first);
+        // The roll length that grows is longer by the separation.
+        let ([up, down], nominal) = (self.growths, single(self.nominal - first as f64));
         let share = self.share;
         // A quarter of the second differences at both is what a cubic about falls by between two places.
         let fall = share * (share - 1.0);
+        let mut values = [0.0; LANES];
         for at in 0..LANES {
-            values[at] +=
-                pinion[at] + (gear[at] + share * (gear[at + 1] - gear[at]) + fall * (bends[at] + bends[at + 1]));
-        }
-        // The roll length that grows is longer by the separation. Loops of one kind each, which then are of whole vectors.
-        let (mut ahead, mut up, mut down) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        for at in 0..LANES {
-            ahead[at] = if grown[at] > 0.0 { self.growths[0] } else { 0.0 };
-        }
-        for at in 0..LANES {
-            up[at] = ahead[at] * (pinion[at + 1] - pinion[at]);
-        }
-        for at in 0..LANES {
-            ahead[at] = if grown[at] > 0.0 { 0.0 } else { self.growths[1] };
-        }
-        for at in 0..LANES {
-            down[at] = ahead[at] * (gear[at] - gear[at + 1]);
-        }
-        for at in 0..LANES {
-            values[at] += (apart[at] - self.aligned) * (up[at] + down[at]);
+            let rises = gear[at + 1] - gear[at];
+            let rise = if PLACES[at] > nominal { up * (pinion[at + 1] - pinion[at]) } else { -down * rises };
+            let longer = (apart[at] - self.aligned) * rise;
+            let between = gear[at] + share * rises + fall * (bends[at] + bends[at + 1]);
+            values[at] = apart[at] + pinion[at] + between + longer;
         }
         let [low, high] = self.numbers;
         if low > first as f64 || high < (first + LANES.cast_signed()) as f64 {
@@ -180,27 +201,14 @@ impl<'a> Scan<'a> {
         [values, apart]
     }
 
-    /// What the gap is no less than before the first place of a block or behind its last one, where flanks stand apart so far in the block and beside it.
+    /// The tangent of both hulls at a place, which nothing is lower than anywhere.
     #[inline]
-    pub(super) fn least_before(&self, first: isize, apart: &[f32; LANES]) -> f32 {
-        self.least_from(first, [apart[1], apart[2]], -1.0)
-    }
-
-    #[inline]
-    pub(super) fn least_behind(&self, last: isize, apart: &[f32; LANES]) -> f32 {
-        self.least_from(last, [apart[LANES - 2], apart[LANES - 3]], 1.0)
-    }
-
-    /// From a place on, where they stand apart by these at it and at the one before; without bound where it may be any less.
-    #[inline]
-    fn least_from(&self, number: isize, [apart, before]: [f32; 2], way: f32) -> f32 {
-        let [pinion, gear] = &self.flanks.depths;
-        let step = self.flanks.step;
+    pub(super) fn tangent(&self, number: isize) -> Tangent {
+        let ([pinion, gear], step) = (&self.flanks.depths, self.flanks.step);
         let [own, other] = self.hulls;
         let [own, grows] = own.at(pinion.first + step * number as f64);
         let [other, falls] = other.at(gear.first - step * ((number + self.ahead) as f64 + f64::from(self.share)));
-        let along = way * single(step) * (grows - falls);
-        if apart - before + along < 0.0 { f32::NEG_INFINITY } else { apart + own + other }
+        Tangent { number, value: own + other, rise: single(step) * (grows - falls) }
     }
 
     /// The length along the pinion's flank at a number of a place.
@@ -215,13 +223,13 @@ impl<'a> Scan<'a> {
     }
 }
 
-/// What one flank turns by, and how much longer its roll length is, from the square of that at a place and as in [`Scan`].
+/// What one flank turns by, from the square of the roll length at a place and as in [`Scan`].
 #[inline(always)]
 #[allow(clippy::inline_always)] // as in `Look`
-fn part(square: f32, [growth, nominal, squares, cubes]: [f32; 4], steps: f32) -> [f32; 2] {
+fn part(square: f32, [growth, nominal, squares, cubes]: [f32; 4], steps: f32) -> f32 {
     let square = square + growth * steps;
     let off = (if square > 0.0 { square } else { 0.0 }).sqrt() - nominal;
-    [off * off * (squares + cubes * off), off]
+    off * off * (squares + cubes * off)
 }
 
 #[inline]
