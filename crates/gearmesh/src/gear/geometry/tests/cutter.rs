@@ -64,24 +64,29 @@ pub(super) fn distance_to_swept(gear: &Gear, x: f64, y: f64, tooth: impl Fn(f64,
     let radius = x.hypot(y);
     let lever = (radius - gear.reference_radius).hypot((radius * gear.reference_radius).sqrt() * reach);
     let moved = |by: i32| lever * 2.0 * reach * f64::from(by) / f64::from(steps);
-    let (mut least, mut nearest) = (f64::INFINITY, 0);
+    let (mut least, mut seen) = (f64::INFINITY, Vec::new());
     let mut open = vec![(0, steps)];
     while let Some((first, last)) = open.pop() {
         let middle = i32::midpoint(first, last);
         let value = at(scan(middle));
-        if value < least {
-            (least, nearest) = (value, middle);
-        }
+        least = least.min(value);
+        seen.push((middle, value));
         if value - moved(last - middle) < least {
             open.extend([(first, middle - 1), (middle + 1, last)].into_iter().filter(|(first, last)| first <= last));
         }
     }
-    let (mut lower, mut upper) = (scan(nearest - 1), scan(nearest + 1));
-    for _ in 0..60 {
-        let (left, right) = (lower + 0.381_966 * (upper - lower), upper - 0.381_966 * (upper - lower));
-        if at(left) < at(right) { upper = right } else { lower = left }
-    }
-    at(0.5 * (lower + upper))
+    // A thin neck is passed by the cutter on both sides: between two places either may be nearer than it is at them.
+    let is_low = |k: i32, value: f64| value <= at(scan(k - 1)) && value <= at(scan(k + 1));
+    let may_be_nearest = seen.into_iter().filter(|(k, value)| value - moved(1) < least && is_low(*k, *value));
+    let nearest = |(k, _): (i32, f64)| {
+        let (mut lower, mut upper) = (scan(k - 1), scan(k + 1));
+        for _ in 0..60 {
+            let (left, right) = (lower + 0.381_966 * (upper - lower), upper - 0.381_966 * (upper - lower));
+            if at(left) < at(right) { upper = right } else { lower = left }
+        }
+        at(0.5 * (lower + upper))
+    };
+    may_be_nearest.map(nearest).fold(f64::INFINITY, f64::min)
 }
 
 /// Tier: the cutter itself. With 17 teeth the rack's straight flank ends 25 nm above the base circle, beyond the tangent

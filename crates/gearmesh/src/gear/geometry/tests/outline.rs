@@ -68,6 +68,27 @@ fn depth_in_a_corner(segment: &Segment, parameter: f64, specification: &Specific
 
 const SPARSE: Density = Density { points: 24, chord_error: None };
 
+/// Tier: the cutter itself; of a tooth that a sharp corner leaves a neck of 2 µm, both sides are touched there.
+#[test]
+fn a_neck_of_micrometres_is_touched_on_both_sides() {
+    let mut specification = specification(5, 1.0, -0.491_942_831_838_526_5);
+    specification.pressure_angle = 20.190_466_112_596_017 * DEGREE;
+    specification.rack = Rack { addendum: 0.7, dedendum: 1.180_945_443_738_292, tip_radius: 0.0, ..Rack::ISO_53_A };
+    specification.bore_radius = 1e-4;
+    let gear = Gear::new(&specification).unwrap();
+    let outline = rack_cut(&gear).unwrap();
+    let mut thinnest = f64::INFINITY;
+    for point in outline.tooth(SPARSE) {
+        let ([x, y], part) = (point.local.position, outline.segments[point.segment].part);
+        if part != OutlinePart::TipLand {
+            thinnest = thinnest.min(2.0 * x.abs());
+            let distance = distance_to_swept_rack(&gear, x, y);
+            assert!(distance.abs() < 1e-12, "{part:?} at {x}, {y}: {distance}");
+        }
+    }
+    assert!(thinnest < 2.5e-6, "{thinnest}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 1000, max_global_rejects: 100_000, ..ProptestConfig::default() })]
 

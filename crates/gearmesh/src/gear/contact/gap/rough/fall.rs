@@ -14,6 +14,9 @@ const LOWER: f64 = 1e-11;
 const MOST_STEPS: usize = 48;
 /// How short a step is of which a parabola tells nearly all, over the distance of places.
 const SHORT: f64 = 0.05;
+/// How short one is that leads to the lowest place, and how often what a parabola then says is left to fall may be twice that.
+const NEAR_BY: f64 = 0.25;
+const LEAVES_OUT: f64 = 2.0;
 /// How near two places between which the gap is lowest are one, over the distance of places.
 const CLOSEST: f64 = 1e-6;
 
@@ -94,6 +97,10 @@ impl<'a, 'b> Fall<'a, 'b> {
             let negligible = if newton.abs() <= SHORT * step { 10.0 * NEGLIGIBLE } else { NEGLIGIBLE };
             if bend > 0.0 && (slope * newton).abs() <= negligible && next >= low && next <= high {
                 self.least = self.least.min(gap + 0.5 * slope * newton);
+                return;
+            }
+            // So near a lowest place that it is no lower than another one, whatever the parabola leaves out.
+            if bend > 0.0 && newton.abs() <= NEAR_BY * step && gap + LEAVES_OUT * slope * newton >= self.least {
                 return;
             }
             self.least = self.least.min(gap);
