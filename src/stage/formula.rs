@@ -9,6 +9,8 @@
 mod tests;
 mod units;
 
+use std::collections::BTreeSet;
+
 use evalexpr::{EvalexprError, Node, Operator, Value, build_operator_tree};
 
 use super::quantity::{Number, described, power, product, shown, wider};
@@ -92,6 +94,13 @@ impl Formula {
     pub fn with_numbers(&self, names: Names, unit: &str) -> Result<String, String> {
         with_numbers(&self.root, names, unit)
     }
+}
+
+/// The names in a text, each once; none where it cannot be read.
+#[must_use]
+pub fn names_in(text: &str) -> BTreeSet<String> {
+    let root = (text.len() <= LONGEST).then(|| build_operator_tree(text).ok()).flatten();
+    root.iter().flat_map(|root| root.iter_variable_identifiers().map(str::to_owned)).collect()
 }
 
 /// Why there is no expression, in words of formulas rather than of trees.

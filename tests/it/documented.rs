@@ -199,6 +199,27 @@ fn what_weber_s_law_costs_is_the_study_s() {
     }
 }
 
+/// A printout takes at most six lines for five numbers, names and reasons included, and as many as the guide says.
+#[test]
+fn printouts_are_as_short_as_said() {
+    let mut said = Vec::new();
+    for study in ["rating", "sun_planet", "undercut", "fzg_c"] {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies").join(study).with_extension("yaml");
+        let text = fs::read_to_string(file).unwrap();
+        let report = text.lines().skip_while(|line| line.trim() != "kind: report");
+        let lines = report.take_while(|line| !matches!(*line, "    compare:" | "    published:")).count();
+        let numbers =
+            Results::of(study).table("report.verdicts").texts("kind").iter().filter(|kind| *kind == "value").count();
+        assert!(5 * lines <= 6 * numbers, "{study}: {lines} lines for {numbers} numbers");
+        said.push((numbers, lines));
+    }
+    let [rating, sun_planet, undercut, fzg_c] = said[..] else { unreachable!() };
+    let words = format!("is a printout of {} numbers in {} lines, `sun_planet.yaml` of", rating.0, rating.1);
+    assert_said("docs/guide.md", &format!("{words} {} in {}.", sun_planet.0, sun_planet.1));
+    let words = format!("`undercut.yaml` ({} numbers in {} lines) and", undercut.0, undercut.1);
+    assert_said("docs/guide.md", &format!("{words} `fzg_c.yaml` ({} in {}) have", fzg_c.0, fzg_c.1));
+}
+
 /// A document with another number, or none, is found.
 #[test]
 #[should_panic(expected = "has other numbers than the results")]

@@ -11,6 +11,7 @@
 mod compare;
 mod entry;
 mod figure;
+mod printed;
 mod rounded;
 mod stated;
 mod stated_figure;
@@ -110,14 +111,15 @@ struct Report {
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let stated = Stated::checked(record)?;
-    let shared = Shared::read(stated.shared.as_deref().unwrap_or_default(), &entry::GIVEN)?;
+    let shared = Shared::read(stated.shared.as_deref().unwrap_or_default(), &entry::subject::GIVEN)?;
     let published = stated.published.into_iter().flatten().zip(record.each_inside(Stated::NAMES.published));
+    let published = published.map(|(stated, record)| Ok((stated.into(), record)));
     let tables = stated.printout.into_iter().flatten().zip(record.each_inside(Stated::NAMES.printout));
-    let printed = tables.flat_map(|(table, record)| {
-        table.entries().zip(record.each_inside(PrintedTable::NAMES.rows)).collect::<Vec<_>>()
+    let printed = tables.flat_map(|(table, record)| printed::entries(&table, record));
+    let entries = (1..).zip(published.chain(printed)).map(|(number, stated)| {
+        let (stated, record) = stated?;
+        ReportEntry::read(number, &stated, record, &shared)
     });
-    let all = (1..).zip(published.chain(printed));
-    let entries = all.map(|(number, (stated, record))| ReportEntry::read(number, &stated, record, &shared));
     let (entries, mut wrong) = Faults::apart(entries);
     if wrong.is_empty() {
         wrong.extend(shared.check_used().err());

@@ -29,6 +29,12 @@ impl Shared {
         Ok(Self { operands: read_operands(stated, taken)?, used: RefCell::default() })
     }
 
+    /// Whether a name is one of them.
+    #[must_use]
+    pub fn has(&self, name: &str) -> bool {
+        self.operands.iter().any(|(known, _)| known == name)
+    }
+
     /// The first that nothing uses.
     ///
     /// # Errors

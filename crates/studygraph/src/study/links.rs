@@ -11,6 +11,7 @@ use super::decode::Reference;
 use super::words::{alternatives, article, quote, stage_of};
 use crate::stage::{Kind, Port, Want};
 use crate::table::schema::Schema;
+use crate::table::select::CellName;
 use crate::table::tolerance::Allowance;
 use declare::error::{Diagnostic, Place, nearest, suggest};
 use declare::record::{Record, Value};
@@ -172,7 +173,7 @@ pub fn check_ports(built: &[Built], blame: &mut Blame) {
             let Some((read, schemas)) = target.and_then(given) else { continue };
             for want in &port.wants {
                 for (found, column) in missing(read, want, schemas) {
-                    for place in places_of(&node.record, port, &want.table, column) {
+                    for place in places_of(node, port, &want.table, column) {
                         blame.put(at, found.clone().at(place));
                     }
                 }
@@ -184,7 +185,7 @@ pub fn check_ports(built: &[Built], blame: &mut Blame) {
                     for (found, _) in needed.wants.iter().flat_map(|want| missing(from, want, schemas)) {
                         let whole = format!("{}.{}.{column}", read.name, want.table);
                         let message = format!("{} cannot be computed: {}", quote(&whole), found.message);
-                        for place in places_of(&node.record, port, &want.table, Some(column)) {
+                        for place in places_of(node, port, &want.table, Some(column)) {
                             blame.put(at, Diagnostic { message: message.clone(), ..found.clone() }.at(place));
                         }
                     }
@@ -266,7 +267,12 @@ fn references(record: &Record, port: &Port) -> Vec<Place> {
 
 /// Where a record says that a table is read, or a column of it: in every text that begins with `stage.table` and has the
 /// column in it or beside it, else in all that begin so, else as [`place_of`].
-fn places_of(record: &Record, port: &Port, table: &str, column: Option<&str>) -> Vec<Place> {
+fn places_of(node: &Node, port: &Port, table: &str, column: Option<&str>) -> Vec<Place> {
+    let record = &node.record;
+    let cells = column.map_or_else(Vec::new, |column| {
+        let is_it = |cell: &CellName| cell.stage == port.stage && cell.table == table && cell.column == column;
+        node.stage.named().into_iter().filter(|named| is_it(&named.cell)).map(|named| named.place).collect()
+    });
     let table = format!("{}.{table}", port.stage);
     let texts = |test: &dyn Fn(&str) -> bool| {
         find(record, &|value| matches!(value, Value::Text(text) if begins(text, &table) && test(text)))
@@ -274,6 +280,10 @@ fn places_of(record: &Record, port: &Port, table: &str, column: Option<&str>) ->
     let with_column = column.map_or_else(Vec::new, |column| {
         let mut places = texts(&|text| has_word(text, column));
         beside(record, &table, column, &mut places);
+        // A cell need not be written in one piece.
+        places.extend(cells);
+        places.sort_by_key(|place| place.offset);
+        places.dedup_by_key(|place| place.offset);
         places
     });
     let places = if with_column.is_empty() { texts(&|_| true) } else { with_column };

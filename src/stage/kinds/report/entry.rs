@@ -2,43 +2,27 @@
 //!
 //! Must not know: figures, other entries.
 
+pub mod subject;
 mod units;
 
+use self::subject::{Proof, Subject, given, read_proof, read_subject};
+use super::printed::Printed;
 use super::rounded::Inside;
-use super::stated::{Expected, Published, StatedProof};
+use super::stated::{Expected, Published};
 use super::verdict::{Comparison, Verdict};
 use crate::stage::Inputs;
-use crate::stage::formula::{Formula, Outcome};
-use crate::stage::operand::names::{Operands, Shared, read_formula, read_operands};
+use crate::stage::formula::Outcome;
+use crate::stage::operand::names::Shared;
 use crate::stage::operand::rows::OperandRows;
 use crate::stage::operand::{Operand, in_si};
 use crate::stage::quantity::Number;
 use crate::stage::target::{Target, read_target};
-use declare::declared::Placed;
 use declare::error::{Diagnostic, Place};
 use declare::record::Record;
 use declare::units::{Dimension, RATIO, in_unit};
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
 use studygraph::table::select::CellName;
-
-/// Names that a proof may use without giving them.
-pub const GIVEN: [&str; 2] = ["published", "computed"];
-
-/// What is compared with the published value.
-enum Subject {
-    Cell(Operand),
-    Formula(Formula, Operands),
-    /// True or false in every row.
-    Claim(Formula, Operands),
-}
-
-struct Proof {
-    claim: Formula,
-    /// Where it stands.
-    place: Place,
-    with: Operands,
-}
 
 pub struct ReportEntry {
     /// From 1, in the order of the study.
@@ -152,8 +136,9 @@ pub fn verdicts<'a>() -> Columns<Finding<'a>> {
 impl ReportEntry {
     /// # Errors
     /// What is wrong with the entry, at the place of the field.
-    pub fn read(number: usize, stated: &Published, record: &Record, shared: &Shared) -> Result<Self, Diagnostic> {
-        let subject = read_subject(stated, record, shared)?;
+    pub fn read(number: usize, printed: &Printed, record: &Record, shared: &Shared) -> Result<Self, Diagnostic> {
+        let Printed { published: stated, of } = printed;
+        let subject = read_subject(stated, of.as_ref(), record, shared)?;
         let is_claim = matches!(subject, Subject::Claim(..));
         let published = match (&stated.value, is_claim) {
             (Some(value), false) => Some(read_target(value, &stated.tolerance, None)?),
@@ -372,78 +357,6 @@ impl ReportEntry {
     }
 }
 
-impl Subject {
-    /// The cell, formula or claim as written.
-    fn text(&self) -> &str {
-        match self {
-            Self::Cell(operand) => &operand.text,
-            Self::Formula(formula, _) | Self::Claim(formula, _) => &formula.text,
-        }
-    }
-
-    /// What its names stand for.
-    fn with(&self) -> String {
-        match self {
-            Self::Cell(_) => String::new(),
-            Self::Formula(_, with) | Self::Claim(_, with) => {
-                let with: Vec<String> =
-                    with.iter().map(|(name, operand)| format!("{name} = {}", operand.text)).collect();
-                with.join("; ")
-            }
-        }
-    }
-}
-
 fn trimmed(text: Option<&str>) -> String {
     text.unwrap_or_default().trim().to_owned()
-}
-
-/// What an entry is about, by the name of its field.
-fn given(stated: &Published) -> impl Iterator<Item = (&'static str, &Placed<String>)> {
-    let names = Published::NAMES;
-    let all = [(names.cell, &stated.cell), (names.formula, &stated.formula), (names.claim, &stated.claim)];
-    all.into_iter().filter_map(|(field, text)| Some((field, text.as_ref()?)))
-}
-
-fn read_subject(stated: &Published, record: &Record, shared: &Shared) -> Result<Subject, Diagnostic> {
-    let given: Vec<_> = given(stated).collect();
-    let [(_, written @ Placed { value: text, place })] = given[..] else {
-        let fields: Vec<&str> = given.iter().map(|(field, _)| *field).collect();
-        let found = if fields.is_empty() { "none".to_owned() } else { format!("`{}`", fields.join("` and `")) };
-        let message = format!("an entry has one of `cell`, `formula` and `claim`; found {found}");
-        return Err(Diagnostic::new(message).at(given.get(1).map_or(record.place, |(_, text)| text.place)));
-    };
-    let wrong = |message: String| Diagnostic::new(message).at(*place);
-    if stated.cell.is_some() {
-        if stated.with.is_some() {
-            return Err(Diagnostic::new("`with` gives names to a `formula` or `claim`, not to a `cell`")
-                .at(record.place_of(Published::NAMES.with)));
-        }
-        let operand = Operand::read(written)?;
-        return if operand.cell().is_some() {
-            Ok(Subject::Cell(operand))
-        } else {
-            Err(wrong(format!("`{text}` is not a cell; write `stage.table[key=value, …].column`")))
-        };
-    }
-    let with = read_operands(stated.with.as_deref().unwrap_or_default(), &[])?;
-    let (formula, with) = read_formula(text, with, &[], *place, shared)?;
-    match (stated.claim.is_some(), formula.is_claim()) {
-        (false, false) => Ok(Subject::Formula(formula, with)),
-        (true, true) => Ok(Subject::Claim(formula, with)),
-        (false, true) => Err(wrong(format!("`{text}` is true or false; call it `claim` and give no value"))),
-        (true, false) => Err(wrong(format!("`{text}` is a number; a claim compares, for example `ga <= iso`"))),
-    }
-}
-
-fn read_proof(StatedProof { claim, with }: &StatedProof, shared: &Shared) -> Result<Proof, Diagnostic> {
-    let with = read_operands(with.as_deref().unwrap_or_default(), &GIVEN)?;
-    let place = claim.place;
-    let (claim, with) = read_formula(&claim.value, with, &GIVEN, place, shared)?;
-    if claim.is_claim() {
-        Ok(Proof { claim, place, with })
-    } else {
-        Err(Diagnostic::new(format!("`{}` is a number; a proof compares, for example `{0} > published`", claim.text))
-            .at(place))
-    }
 }

@@ -44,15 +44,21 @@ pub struct Published {
     pub note: Option<String>,
 }
 
-/// A table as it was printed: a line for each number.
+/// A table as it was printed: a line for each number, or for those that stand side by side.
 #[derive(Debug, Declared)]
 pub struct PrintedTable {
     /// where it is printed: a page, a section of a printout
     #[declared(name = "where", example = "Printout, page 3")]
     pub location: Option<String>,
-    /// what the cells of its rows begin with, so that a row names a column alone
-    #[declared(example = "pair.gears[gear=pinion]")]
+    /// what the cells of rows of one number begin with, so that a row, and a name in a formula, is a column alone
+    #[declared(example = "rating.summary")]
     pub of: Option<Placed<String>>,
+    /// for numbers that stand side by side: what each is called, and what its cells begin with
+    #[declared(example = "pair.inspection[gear=pinion]")]
+    pub columns: Option<Vec<(String, Placed<String>)>>,
+    /// what names stand for in the formulas of its rows: a cell or quantity, or one for each of `columns`
+    #[declared(name = "let", example = "33.129 mm")]
+    pub names: Option<Vec<(String, Vec<Placed<String>>)>>,
     /// how far apart counts as equal in rows that say nothing of it: `digits`, `1 %`, or a quantity
     #[declared(default = "digits")]
     pub tolerance: Placed<String>,
@@ -63,26 +69,26 @@ pub struct PrintedTable {
     pub rows: Vec<PrintedRow>,
 }
 
-/// A number of a printed table.
+/// A number of a printed table, or those that stand side by side.
 #[derive(Debug, Declared)]
 pub struct PrintedRow {
     /// what it is, in words
     #[declared(example = "Span measurement W_k")]
     pub label: String,
-    /// the computed cell, or its column where the table says the rest
+    /// the computed cell, or its column where the table says the rest; or one for each value
     #[declared(example = "tip_radius")]
-    pub cell: Option<Placed<String>>,
-    /// or arithmetic over the names in `let`
+    pub cell: Option<Vec<Placed<String>>>,
+    /// or arithmetic over names in `let` and columns of where the cells begin; or one for each value
     #[declared(example = "a / b - 1")]
-    pub formula: Option<Placed<String>>,
-    /// the value as printed, with its unit
+    pub formula: Option<Vec<Placed<String>>>,
+    /// the value as printed, with its unit; or those of `columns`, `none` where nothing is printed
     #[declared(example = "33.129 mm")]
-    pub value: Placed<String>,
+    pub value: Vec<Placed<String>>,
     /// how far apart counts as equal in this row
     #[declared(example = "1 %")]
     pub tolerance: Option<Placed<String>>,
-    /// where the computed value stands today, so that it cannot drift unseen
-    pub expected: Option<Expected>,
+    /// where the computed value stands today, so that it cannot drift unseen; one for each that is printed
+    pub expected: Option<Vec<Expected>>,
     /// why they differ
     #[declared(example = "the program rounds its stiffness")]
     pub because: Option<String>,
@@ -91,37 +97,8 @@ pub struct PrintedRow {
     pub note: Option<String>,
 }
 
-impl PrintedTable {
-    /// The rows as entries of their own.
-    pub fn entries(self) -> impl Iterator<Item = Published> {
-        let Self { location, of, tolerance, because, rows } = self;
-        rows.into_iter().map(move |row| {
-            let whole = |cell: Placed<String>| match &of {
-                Some(of) if !cell.value.contains('.') => {
-                    Placed { value: format!("{}.{}", of.value.trim(), cell.value.trim()), place: cell.place }
-                }
-                _ => cell,
-            };
-            Published {
-                label: Some(row.label),
-                location: location.clone(),
-                cell: row.cell.map(whole),
-                formula: row.formula,
-                claim: None,
-                with: None,
-                value: Some(row.value),
-                tolerance: row.tolerance.unwrap_or_else(|| tolerance.clone()),
-                expected: row.expected,
-                because: row.because.or_else(|| because.clone()),
-                proof: None,
-                note: row.note,
-            }
-        })
-    }
-}
-
 /// Where a computed value stands.
-#[derive(Debug, Declared)]
+#[derive(Clone, Debug, Declared)]
 pub struct Expected {
     /// the value the study stands by, with its unit; for a claim the number of rows
     #[declared(example = "4.18 um")]

@@ -3,7 +3,7 @@
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
-use super::stated::{Expected, PrintedRow, StatedProof};
+use super::stated::{Expected, StatedProof};
 use super::*;
 use crate::stage::Demand;
 use declare::declared::record_of;
@@ -15,6 +15,7 @@ use studygraph::table::data::Cell;
 use studygraph::table::schema::Column;
 
 mod figures;
+mod printed;
 
 type Fields<'a> = &'a [(&'static str, Value)];
 
@@ -73,7 +74,11 @@ fn run(published: Vec<Value>, figures: Vec<Value>) -> Result<Vec<Table>, String>
 
 /// The tables of the report on one table of another stage, and what it warns of.
 fn run_on(summary: &Table, published: Vec<Value>, figures: Vec<Value>) -> Result<(Vec<Table>, Vec<String>), String> {
-    let stage = (KIND.build)(&record(published, figures)).map_err(|diagnostic| format!("study: {diagnostic}"))?;
+    run_record(summary, &record(published, figures))
+}
+
+fn run_record(summary: &Table, record: &Record) -> Result<(Vec<Table>, Vec<String>), String> {
+    let stage = (KIND.build)(record).map_err(|diagnostic| format!("study: {diagnostic}"))?;
     if let Some(found) = stage.wrong().first() {
         return Err(format!("study: {found}"));
     }
@@ -340,43 +345,6 @@ fn entries_that_make_no_sense_are_refused_when_the_study_is_read() {
         let error = verdict(&fields).unwrap_err();
         assert!(error.starts_with("study: ") && error.contains(message), "{message}: {error}");
     }
-}
-
-/// A printed table is the entries that it stands for, and what all formulas know is said once.
-#[test]
-fn a_printed_table_is_a_line_for_each_number() {
-    let ratio: Fields = &[("label", text("ratio")), ("formula", text("a / b - 1")), ("value", text("100 %"))];
-    let row = |fields: Fields| group::<PrintedRow>(fields);
-    let whole: Fields =
-        &[("label", text("long")), ("cell", text("ste.summary[design=short].peak_to_peak")), ("value", text("3.7 um"))];
-    let rows = vec![
-        row(&[("label", text("short")), ("cell", text("peak_to_peak")), ("value", text("2.10 um"))]),
-        row(ratio),
-        row(whole),
-    ];
-    let table = group::<PrintedTable>(&[
-        ("where", text("page 3")),
-        ("of", text("ste.summary[design=short, torque=50 N m]")),
-        ("tolerance", text("5 %")),
-        ("rows", list(rows)),
-    ]);
-    let shared = Value::Map(vec![("a".to_owned(), item(text("4 um"))), ("b".to_owned(), item(text("2 um")))]);
-    let read = |shared: Value| {
-        let fields = vec![("printout", item(list(vec![table.clone()]))), ("let", item(shared))];
-        build(&Record { fields, place: Place::default() })
-    };
-    let stage = read(shared.clone()).unwrap();
-    assert_eq!(stage.wrong(), []);
-    let said: Vec<_> = stage.named().iter().map(|named| format!("{:?}", named.cell)).collect();
-    assert_eq!(said.len(), 2, "{said:?}");
-    assert!(said[0].contains("\"torque\"") && !said[1].contains("\"torque\""), "{said:?}");
-    // What nothing uses is told, where it stands.
-    let Value::Map(mut pairs) = shared else { unreachable!() };
-    pairs.push(("c".to_owned(), item(text("1 um"))));
-    let stage = read(Value::Map(pairs)).unwrap();
-    let wrong: Vec<String> =
-        stage.wrong().iter().map(|wrong| format!("{}: {}", wrong.place.unwrap().line, wrong.message)).collect();
-    assert_eq!(wrong, ["7: `let` gives `c`, but no formula, claim or proof uses it"]);
 }
 
 #[test]

@@ -2,7 +2,8 @@
 //!
 //! Must not know: values.
 
-use super::{GIVEN, Proof, ReportEntry, Subject};
+use super::ReportEntry;
+use super::subject::{GIVEN, Proof, Subject};
 use crate::stage::DimensionOf;
 use crate::stage::formula::Formula;
 use crate::stage::operand::Source;

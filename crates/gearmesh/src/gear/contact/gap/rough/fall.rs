@@ -14,8 +14,10 @@ const LOWER: f64 = 1e-11;
 const MOST_STEPS: usize = 48;
 /// How short a step is of which a parabola tells nearly all, over the distance of places.
 const SHORT: f64 = 0.05;
-/// How short one is that leads to the lowest place, and how often what a parabola then says is left to fall may be twice that.
+/// A place is given up where a parabola's lowest point is nearer than this, over the distance of places, and would be no lower than the
+/// least gap found so far even if it lay four times as far down.
 const NEAR_BY: f64 = 0.25;
+/// Four times as far, in terms of slope times step: a parabola falls by half of that.
 const LEAVES_OUT: f64 = 2.0;
 /// How near two places between which the gap is lowest are one, over the distance of places.
 const CLOSEST: f64 = 1e-6;
@@ -99,7 +101,7 @@ impl<'a, 'b> Fall<'a, 'b> {
                 self.least = self.least.min(gap + 0.5 * slope * newton);
                 return;
             }
-            // So near a lowest place that it is no lower than another one, whatever the parabola leaves out.
+            // So near the lowest point that it is no lower than another one, whatever the parabola leaves out.
             if bend > 0.0 && newton.abs() <= NEAR_BY * step && gap + LEAVES_OUT * slope * newton >= self.least {
                 return;
             }

@@ -1,0 +1,120 @@
+//! What is compared with a published value, and what proves a reason: a cell, a formula, a claim.
+//!
+//! Must not know: values.
+
+use super::super::printed::within;
+use super::super::stated::{Published, StatedProof};
+use crate::stage::formula::{Formula, names_in};
+use crate::stage::operand::Operand;
+use crate::stage::operand::names::{Operands, Shared, read_formula, read_operands};
+use declare::declared::Placed;
+use declare::error::{Diagnostic, Place};
+use declare::record::Record;
+
+/// Names that a proof may use without giving them.
+pub const GIVEN: [&str; 2] = ["published", "computed"];
+
+/// What is compared with the published value.
+pub enum Subject {
+    Cell(Operand),
+    Formula(Formula, Operands),
+    /// True or false in every row.
+    Claim(Formula, Operands),
+}
+
+/// What proves a reason.
+pub struct Proof {
+    pub claim: Formula,
+    /// Where it stands.
+    pub place: Place,
+    pub with: Operands,
+}
+
+impl Subject {
+    /// The cell, formula or claim as written.
+    pub fn text(&self) -> &str {
+        match self {
+            Self::Cell(operand) => &operand.text,
+            Self::Formula(formula, _) | Self::Claim(formula, _) => &formula.text,
+        }
+    }
+
+    /// What its names stand for.
+    pub fn with(&self) -> String {
+        match self {
+            Self::Cell(_) => String::new(),
+            Self::Formula(_, with) | Self::Claim(_, with) => {
+                let with: Vec<String> =
+                    with.iter().map(|(name, operand)| format!("{name} = {}", operand.text)).collect();
+                with.join("; ")
+            }
+        }
+    }
+}
+
+/// What an entry is about, by the name of its field.
+pub fn given(stated: &Published) -> impl Iterator<Item = (&'static str, &Placed<String>)> {
+    let names = Published::NAMES;
+    let all = [(names.cell, &stated.cell), (names.formula, &stated.formula), (names.claim, &stated.claim)];
+    all.into_iter().filter_map(|(field, text)| Some((field, text.as_ref()?)))
+}
+
+/// # Errors
+/// What is wrong with it, at its place.
+pub fn read_subject(
+    stated: &Published,
+    of: Option<&Placed<String>>,
+    record: &Record,
+    shared: &Shared,
+) -> Result<Subject, Diagnostic> {
+    let given: Vec<_> = given(stated).collect();
+    let [(_, written @ Placed { value: text, place })] = given[..] else {
+        let fields: Vec<&str> = given.iter().map(|(field, _)| *field).collect();
+        let found = if fields.is_empty() { "none".to_owned() } else { format!("`{}`", fields.join("` and `")) };
+        let message = format!("an entry has one of `cell`, `formula` and `claim`; found {found}");
+        return Err(Diagnostic::new(message).at(given.get(1).map_or(record.place, |(_, text)| text.place)));
+    };
+    let wrong = |message: String| Diagnostic::new(message).at(*place);
+    if stated.cell.is_some() {
+        if stated.with.is_some() {
+            return Err(Diagnostic::new("`with` gives names to a `formula` or `claim`, not to a `cell`")
+                .at(record.place_of(Published::NAMES.with)));
+        }
+        let operand = Operand::read(written)?;
+        return if operand.cell().is_some() {
+            Ok(Subject::Cell(operand))
+        } else {
+            Err(wrong(format!("`{text}` is not a cell; write `stage.table[key=value, …].column`")))
+        };
+    }
+    let mut with = read_operands(stated.with.as_deref().unwrap_or_default(), &[])?;
+    // Names that nothing else gives are columns of where the cells of the printed table begin.
+    if of.is_some() {
+        let is_given = |name: &String| shared.has(name) || with.iter().any(|(own, _)| own == name);
+        for name in names_in(text).into_iter().filter(|name| !is_given(name)).collect::<Vec<_>>() {
+            let column = within(of, Placed { value: name.clone(), place: *place });
+            with.push((name, Operand::read(&column)?));
+        }
+    }
+    let (formula, with) = read_formula(text, with, &[], *place, shared)?;
+    match (stated.claim.is_some(), formula.is_claim()) {
+        (false, false) => Ok(Subject::Formula(formula, with)),
+        (true, true) => Ok(Subject::Claim(formula, with)),
+        (false, true) => Err(wrong(format!("`{text}` is true or false; call it `claim` and give no value"))),
+        (true, false) => Err(wrong(format!("`{text}` is a number; a claim compares, for example `ga <= iso`"))),
+    }
+}
+
+/// # Errors
+/// What is wrong with it, at its place.
+pub fn read_proof(StatedProof { claim, with }: &StatedProof, shared: &Shared) -> Result<Proof, Diagnostic> {
+    let with = read_operands(with.as_deref().unwrap_or_default(), &GIVEN)?;
+    let place = claim.place;
+    let (claim, with) = read_formula(&claim.value, with, &GIVEN, place, shared)?;
+    if claim.is_claim() {
+        Ok(Proof { claim, place, with })
+    } else {
+        Err(Diagnostic::new(format!("`{}` is a number; a proof compares, for example `{0} > published`", claim.text))
+            .at(place))
+    }
+}
