@@ -21,6 +21,13 @@ const TOOLS: &[(&str, &str, std::ops::Range<f64>)] = &[
     ),
     ("notch", "rack: { dedendum: 1.4, tip_radius: 0.3, machining_allowance: 0.05, notch_radius: 0.15 }", 0.97..0.99),
     ("cutter", "pinion_cutter: { teeth: 23, profile_shift: 0.1, addendum: 1.4, tip_radius: 0.15 }", 0.97..0.99),
+    // The rack cuts the other gears of the pair; of it a shaped gear has nothing.
+    (
+        "cutter beside a rack with protuberance",
+        "rack: { protuberance: 0.05, machining_allowance: 0.02 }, \
+         pinion_cutter: { teeth: 23, profile_shift: 0.1, addendum: 1.4, tip_radius: 0.15 }",
+        0.97..0.99,
+    ),
 ];
 
 const METHODS: [&str; 4] = ["energy", "weber_banaschek", "iso6336", "{ finite_element: { elements_across: 8 } }"];

@@ -63,8 +63,7 @@ impl InspectedRow {
 #[must_use]
 pub fn inspection() -> Columns<InspectedRow> {
     let description = "What is measured of each gear to know how thick its teeth are (ISO 21771).";
-    let undercut =
-        "How far the protuberance reaches beyond the finished flank s_pr = pr − q, normal to it; 0 where it does not.";
+    let undercut = "How far the protuberance reaches beyond the finished flank s_pr = pr − q, normal to it; 0 where it does not, and of a shaped gear.";
     let over = "Dimension over two balls M_dK; with an odd number of teeth half a pitch from opposite.";
     let usual = "Diameter D_M of the ball: stated, or that of the one that touches the V-circle.";
     let chord = |row: &InspectedRow| -> Chord { row.gear.chord(row.gear.reference_radius) };
@@ -95,10 +94,7 @@ pub fn inspection() -> Columns<InspectedRow> {
         .float("tip_form_roll_angle", "deg", "Roll angle at the tip form circle.", |row| row.gear.flank_end.roll)
         .float("root_form_roll_angle", "deg", "Roll angle at the root form circle.", |row| row.gear.form_roll)
         .but(|column| column.tolerance(1e-9, 1e-9))
-        .float("residual_undercut", "mm", undercut, |row| {
-            let Specification { module, rack, .. } = row.gear.specification;
-            module * rack.residual_undercut().max(0.0)
-        })
+        .float("residual_undercut", "mm", undercut, |row| row.gear.specification.residual_undercut())
         .but(|column| column.tolerance(1e-9, 1e-9))
         .float("notch_depth", "mm", "Depth t_g of the notch that grinding leaves in the root; 0 without one.", |row| {
             row.gear.generated().map_or(f64::NAN, |generated| generated.notch_depth)

@@ -111,6 +111,13 @@ pub struct Specification {
 }
 
 impl Specification {
+    /// s_pr \[m\]: how far the protuberance of its rack reaches beyond the finished flank, normal to it; 0 where it does not, and of a
+    /// gear that a cutter shapes.
+    #[must_use]
+    pub fn residual_undercut(&self) -> f64 {
+        if self.cutter.is_some() { 0.0 } else { self.module * self.rack.residual_undercut().max(0.0) }
+    }
+
     /// ρ of the tip of its tool \[modules\].
     #[must_use]
     pub fn tool_tip_radius(&self) -> f64 {

@@ -1,5 +1,6 @@
 //! Published and independently computed values, the cutter as an oracle, and inputs that must be refused.
 
+mod annex;
 mod cutter;
 mod meshing;
 mod outline;
