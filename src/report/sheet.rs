@@ -42,14 +42,21 @@ impl Line {
 }
 
 /// What of `gears` is shown: words, symbol by ISO 21771, column.
-const GEARS: [(&str, &str, &str); 18] = [
+const GEARS: [(&str, &str, &str); 25] = [
     ("Teeth", "z", "teeth"),
     ("Module", "m", "module"),
     ("Pressure angle", "α", "pressure_angle"),
     ("Profile shift coefficient", "x", "profile_shift"),
+    ("Thickness allowance", "A_s", "thickness_allowance"),
     ("Addendum of the rack", "h*_aP", "rack_addendum"),
     ("Dedendum of the rack", "h*_fP", "rack_dedendum"),
     ("Rounding of the rack", "ρ*_fP", "rack_tip_radius"),
+    ("Protuberance of the rack", "pr*", "protuberance"),
+    ("Machining allowance", "q*", "machining_allowance"),
+    ("Teeth of the cutter", "z_0", "cutter_teeth"),
+    ("Profile shift coefficient of the cutter", "x_0", "cutter_profile_shift"),
+    ("Addendum of the cutter", "h*_aP0", "cutter_addendum"),
+    ("Rounding of the cutter", "ρ*_aP0", "cutter_tip_radius"),
     ("Face width", "b", "face_width"),
     ("Reference circle, radius", "r", "reference_radius"),
     ("Base circle, radius", "r_b", "base_radius"),
@@ -62,6 +69,12 @@ const GEARS: [(&str, &str, &str); 18] = [
     ("Young's modulus", "E", "youngs_modulus"),
     ("Poisson's ratio", "ν", "poisson_ratio"),
 ];
+
+/// Columns of the rack that cuts a gear, and of the cutter that shapes one: a gear has the one or the other.
+const OF_RACK: [&str; 4] = ["rack_dedendum", "rack_tip_radius", "protuberance", "machining_allowance"];
+const OF_CUTTER: [&str; 4] = ["cutter_teeth", "cutter_profile_shift", "cutter_addendum", "cutter_tip_radius"];
+/// Those that are left out where all gears have 0.
+const SELDOM: [&str; 3] = ["thickness_allowance", "protuberance", "machining_allowance"];
 
 const PAIR: [(&str, &str, &str); 4] = [
     ("Centre distance", "a", "centre_distance"),
@@ -95,7 +108,12 @@ pub fn sheets(manifest: &Manifest, tables: Tables<'_>) -> Vec<Sheet> {
             let (gears, pair) = (table("gears")?, table("pair"));
             let lines = |table: &Table, shown: &[(&'static str, &'static str, &'static str)]| -> Vec<Line> {
                 let line = |&(what, symbol, column): &(&'static str, &'static str, &'static str)| {
-                    let values: Vec<String> = (0..table.rows()).rev().map(|row| cell(table, column, row)).collect();
+                    let values: Vec<String> =
+                        (0..table.rows()).rev().map(|row| of_its_tool(table, column, row)).collect();
+                    let is_nothing = |row| is_zero(table, column, row);
+                    if SELDOM.contains(&column) && (0..table.rows()).all(is_nothing) {
+                        return None;
+                    }
                     (!values.iter().all(String::is_empty)).then(|| Line::new(what, symbol, values))
                 };
                 shown.iter().filter_map(line).collect()
@@ -135,6 +153,22 @@ fn cell(table: &Table, column: &str, row: usize) -> String {
         Some(Cell::Float(value)) if value.is_finite() => with_unit(&significant(value, 6), unit),
         Some(Cell::Float(_)) | None => String::new(),
         Some(other) => other.to_string(),
+    }
+}
+
+/// A cell; empty where it is of a tool that the gear does not have.
+fn of_its_tool(table: &Table, column: &str, row: usize) -> String {
+    let is_cut_by_rack = is_zero(table, "cutter_teeth", row);
+    let others = if is_cut_by_rack { OF_CUTTER } else { OF_RACK };
+    if others.contains(&column) { String::new() } else { cell(table, column, row) }
+}
+
+/// Whether there is a number 0, or none.
+fn is_zero(table: &Table, column: &str, row: usize) -> bool {
+    match table.column(column).map(|data| data.cell(row)) {
+        Some(Cell::Float(value)) => value == 0.0,
+        Some(Cell::Integer(value)) => value == 0,
+        _ => true,
     }
 }
 

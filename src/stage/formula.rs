@@ -55,9 +55,11 @@ impl Formula {
         if text.trim().is_empty() {
             return Err("the formula is empty".to_owned());
         }
-        if text.len() > LONGEST {
-            return Err(format!("the formula has {} characters; at most {LONGEST} are read", text.len()));
+        let length = text.chars().count();
+        if length > LONGEST {
+            return Err(format!("the formula has {length} characters; at most {LONGEST} are read"));
         }
+        refuse_foreign(text)?;
         let root = build_operator_tree(text).map_err(|error| unreadable(text, &error))?;
         let is_claim = check(&root, names)?;
         Ok(Self { text: text.trim().to_owned(), root, is_claim })
@@ -96,11 +98,27 @@ impl Formula {
     }
 }
 
-/// The names in a text, each once; none where it cannot be read.
+/// The names in a text, each once, if it can be read.
 #[must_use]
-pub fn names_in(text: &str) -> BTreeSet<String> {
-    let root = (text.len() <= LONGEST).then(|| build_operator_tree(text).ok()).flatten();
-    root.iter().flat_map(|root| root.iter_variable_identifiers().map(str::to_owned)).collect()
+pub fn names_in(text: &str) -> Option<BTreeSet<String>> {
+    let can_be_read = text.chars().count() <= LONGEST && refuse_foreign(text).is_ok();
+    let root = can_be_read.then(|| build_operator_tree(text).ok())??;
+    Some(root.iter_variable_identifiers().map(str::to_owned).collect())
+}
+
+/// Refuses what the library reads and nobody means.
+fn refuse_foreign(text: &str) -> Result<(), String> {
+    if let Some(sign) = ["//", "/*"].into_iter().find(|sign| text.contains(sign)) {
+        return Err(format!("`{text}` has `{sign}`, which is no sign of a formula: a division is one `/`"));
+    }
+    if text.contains(['[', ']']) {
+        return Err(format!("`{text}` has a cell with `[…]`; name it in `let` or `with`, and write the name here"));
+    }
+    let mut words = text.split(|character: char| !character.is_alphanumeric());
+    match words.find(|word| word.starts_with("0x") || word.starts_with("0X")) {
+        Some(word) => Err(format!("`{word}` is a hexadecimal number; write it with decimal digits")),
+        None => Ok(()),
+    }
 }
 
 /// Why there is no expression, in words of formulas rather than of trees.
@@ -116,7 +134,7 @@ fn unreadable(text: &str, error: &EvalexprError) -> String {
     match with_unit {
         Some(pair) => format!(
             "`{text}` has a number with a unit, `{}`; write a name there, and what it stands for beside the formula: \
-             `with: {{ limit: {} }}`",
+             `with: {{ limit: {} }}`, in a report also in `let`",
             pair.join(" "),
             pair.join(" ").trim_matches(['(', ')'])
         ),
@@ -154,6 +172,9 @@ fn check(node: &Node, names: &[&str]) -> Result<bool, String> {
         Operator::Neg => sides("-", 1, false).map(|()| false),
         Operator::Mul => sides("*", 2, false).map(|()| false),
         Operator::Div => sides("/", 2, false).map(|()| false),
+        Operator::Exp if children.first().is_some_and(|base| *base.operator() == Operator::Exp) => {
+            Err("`a^b^c` can be read in two ways; write brackets, `(a^b)^c` or `a^(b^c)`".to_owned())
+        }
         Operator::Exp => sides("^", 2, false).map(|()| false),
         operator if comparison(operator).is_some() => {
             sides(comparison(operator).unwrap_or(""), 2, false).map(|()| true)
@@ -172,6 +193,9 @@ fn check(node: &Node, names: &[&str]) -> Result<bool, String> {
         Operator::FunctionIdentifier { identifier } => {
             if !FUNCTIONS.contains(&identifier.as_str()) {
                 return Err(format!("there is no function `{identifier}`; {}", suggest(identifier, FUNCTIONS)));
+            }
+            if !matches!(children, [only] if *only.operator() == Operator::RootNode) {
+                return Err(format!("`{identifier}` takes its values in brackets"));
             }
             let arguments = arguments(children);
             let expected = if matches!(identifier.as_str(), "min" | "max") { 2..=usize::MAX } else { 1..=1 };

@@ -21,6 +21,8 @@ pub struct Operand {
     pub text: String,
     /// Where it stands.
     pub place: Place,
+    /// Where its rows are said: there too, unless it is a column of something that is said once.
+    pub rows: Place,
     pub source: Source,
 }
 
@@ -42,7 +44,7 @@ impl Operand {
     pub fn read(Placed { value, place }: &Placed<String>) -> Result<Self, Diagnostic> {
         let text = value.trim();
         let source = Self::source(text).map_err(|message| Diagnostic::new(message).at(*place))?;
-        Ok(Self { text: text.to_owned(), place: *place, source })
+        Ok(Self { text: text.to_owned(), place: *place, rows: *place, source })
     }
 
     fn source(text: &str) -> Result<Source, String> {
@@ -56,6 +58,12 @@ impl Operand {
             }
             _ => Ok(Source::Quantities { numbers: quantities(text)?, unit: split_quantity(first.trim()).1.to_owned() }),
         }
+    }
+
+    /// The same, with its rows said elsewhere.
+    #[must_use]
+    pub fn with_rows_at(self, rows: Place) -> Self {
+        Self { rows, ..self }
     }
 
     /// What is wrong with it.
@@ -84,7 +92,11 @@ impl Operand {
                 rows: vec![Vec::new(); numbers.len()],
             }),
             Source::Cells(name) => {
-                cells(name, inputs).map_err(|problem| self.refused(format!("`{}`: {problem}", self.text)))
+                let rows = rows(name, inputs).map_err(|problem| {
+                    let of = self.text.rsplit_once('.').map_or(self.text.as_str(), |(of, _)| of);
+                    Diagnostic::new(format!("`{of}`: {problem}")).at(self.rows)
+                })?;
+                cells(name, &rows, inputs).map_err(|problem| self.refused(format!("`{}`: {problem}", self.text)))
             }
         }
     }
@@ -168,12 +180,15 @@ pub fn table<'a>(stage: &str, table: &str, inputs: &Inputs<'a>) -> Result<&'a Ta
     inputs.table(stage, table).map_err(|failure| failure.to_string())
 }
 
-fn cells(name: &CellName, inputs: &Inputs) -> Result<Values, String> {
+/// The rows that meet the conditions.
+fn rows(name: &CellName, inputs: &Inputs) -> Result<Vec<usize>, String> {
     let table = table(&name.stage, &name.table, inputs)?;
     let rows = rows_where(table, &name.conditions)?;
-    if rows.is_empty() {
-        return Err(why_none(table, &name.conditions)?);
-    }
+    if rows.is_empty() { Err(why_none(table, &name.conditions)?) } else { Ok(rows) }
+}
+
+fn cells(name: &CellName, rows: &[usize], inputs: &Inputs) -> Result<Values, String> {
+    let table = table(&name.stage, &name.table, inputs)?;
     let schema = table.schema();
     let index = schema.position(&name.column).ok_or_else(|| unknown_column(schema, &name.column))?;
     let column = &schema.columns[index];

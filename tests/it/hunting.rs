@@ -84,9 +84,14 @@ fn pitch_deviations_come_back() {
         .collect();
     let [low, high] = [f64::min, f64::max].map(|pick| cumulative.iter().copied().reduce(pick).unwrap());
     let largest = single.iter().map(|deviation| (deviation - mean).abs()).fold(0.0, f64::max);
-    let [one, other] = [(&single, "single"), (&cumulative, "cumulative")]
+    // They count from the first tooth, wherever their zero is stated.
+    let from_first: Vec<f64> = cumulative.iter().map(|deviation| deviation - cumulative[0]).collect();
+    let tables = [(&single, "single"), (&cumulative, "cumulative"), (&from_first, "cumulative")]
         .map(|(given, list)| ran(&study("pinion", given, list), "summary"));
-    for table in [&one, &other] {
+    let means = tables.each_ref().map(|table| table.floats("mean")[0]);
+    assert!(means.iter().all(|mean| (mean - means[2]).abs() < 1e-9), "{means:?}");
+    let [one, other, _] = &tables;
+    for table in &tables {
         for (column, exact) in [("pinion_cumulative_deviation", high - low), ("pinion_single_deviation", largest)] {
             let found = table.floats(column)[0];
             assert!((found - exact).abs() < 1e-9, "{column}: {found} for {exact}");

@@ -103,6 +103,25 @@ fn the_range_of_a_row_is_that_of_its_closed_form() {
     );
 }
 
+/// Tier: closed form; a stage that stands inside a formula alone, after a sign, a bracket or another stage, is computed anew as well.
+#[test]
+fn stages_inside_formulas_are_found() {
+    let other = PAIR.replace("  pair:", "  other:");
+    for formula in [
+        "2*pair.pair.base_pitch",
+        "(pair.pair.base_pitch)*2",
+        "other.pair.base_pitch - other.pair.base_pitch + 2*pair.pair.base_pitch",
+        "-(-2)*pair.pair.base_pitch",
+    ] {
+        let published = format!(
+            "      []\n    printout:\n      - rows:\n          - {{ label: x, formula: \"{formula}\", value: 17.7 mm, tolerance: 1 mm }}\n"
+        );
+        let found = ran(&[&rounded(), &other], &published);
+        let pitch = |module: f64| 2.0 * std::f64::consts::PI * module * libm::cos(20_f64.to_radians());
+        assert_near(range(verdicts(&found), 0), [pitch(2.995), pitch(3.005)], formula);
+    }
+}
+
 /// Second method: a fit that looks for values inside finds some where the row is reproduced, and none where it is not.
 #[test]
 fn a_row_is_reproduced_where_a_fit_finds_values_inside() {

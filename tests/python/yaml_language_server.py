@@ -87,7 +87,7 @@ beyond = {
     "interference", "thickness_upside_down", "profile_shift_said_twice", "profile_shifts_both_follow",
     "pitch_deviations_twice", "tooth_measured_twice", "teeth_without_deviations", "thickness_leaves_no_tooth",
     "balls_too_near", "load_dependent_without_torque",
-    "missing_column", "missing_stage", "missing_table", "no_row_with_this_design", "no_row_with_this_torque",
+    "printed_columns", "printed_column_unknown", "missing_column", "missing_stage", "missing_table", "no_row_with_this_design", "no_row_with_this_torque",
     "pointed_tip", "rack_above_full_round", "relief_given_twice", "resolved_contact_of_a_beam",
     "resolved_contact_without_torque", "root_stress_without_a_mesh", "sharp_root_of_finite_elements",
     "torque_backwards", "wrong_kind_of_stage", "bad_tolerance", "device_as_stage", "device_as_study", "nul_in_a_name",

@@ -165,10 +165,17 @@ fn what_is_no_formula_is_refused_when_it_is_read() {
         ("F && b", "joins comparisons"),
         ("true", "no place"),
         ("()", "missing between brackets"),
+        ("F // 2", "a division is one `/`"),
+        ("F /* + 3 */", "no sign of a formula"),
+        ("F + 0x10", "hexadecimal"),
+        ("b ^ 2 ^ 3", "read in two ways"),
+        ("sqrt 4 * b", "takes its values in brackets"),
+        ("ste.summary[torque=3].mean + b", "name it in `let` or `with`"),
     ] {
         let error = Formula::parse(text, &NAMES).unwrap_err();
         assert!(error.contains(message), "{text}: {error}");
     }
+    assert!(Formula::parse("(b ^ 2) ^ 3 + b ^ (2 ^ 3) - sqrt(b)", &NAMES).is_ok());
     let deep = "(".repeat(100_000);
     assert!(Formula::parse(&deep, &NAMES).unwrap_err().contains("at most"));
 }

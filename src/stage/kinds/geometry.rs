@@ -139,7 +139,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
             .and_then(|toe| Outline::new(&gear, toe, gear.tip, design.relief(side)))
             .map_err(|error| refused(&error.on(side)))?;
         let limits = stated.limits(&gear.specification).map_err(|error| refused(&error.on(side)))?;
-        Ok(Drawn { side, gear, outline, limits, measured_with: stated.measured_with })
+        Ok(Drawn { side, gear, outline, limits, measured_with: stated.measured_with() })
     };
     let gears = gears.each().zip(built).map(drawn).collect::<Result<_, Diagnostic>>()?;
     let centre_distance =

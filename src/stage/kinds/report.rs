@@ -168,7 +168,7 @@ impl Stage for Report {
 
     fn named(&self) -> Vec<Named> {
         let of_operand = |(operand, is_one): (&Operand, bool), beside| {
-            Some(Named { cell: operand.cell()?.clone(), place: operand.place, is_one, beside })
+            Some(Named { cell: operand.cell()?.clone(), place: operand.place, rows: operand.rows, is_one, beside })
         };
         let entries = self.entries.iter().flat_map(|entry| {
             let subject = entry.operands().filter_map(move |named| of_operand(named, entry.beside(named.0)));
@@ -221,7 +221,7 @@ impl Stage for Report {
         let wrong = entries.filter_map(|entry| entry.find(inputs, None).err());
         let wrong = wrong.chain(comparisons.filter_map(|comparison| comparison.find(inputs).err()));
         let wrong = wrong.chain(figures.filter_map(|figure| figure.marked(inputs).err()));
-        Ok(Faults::all(wrong.collect())?)
+        Ok(Faults::all(told_once(wrong))?)
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
@@ -235,7 +235,7 @@ impl Stage for Report {
         let compared = Faults::collect(self.comparisons.iter().map(|comparison| comparison.find(inputs)));
         let marked = Faults::collect(self.figures.iter().map(|figure| figure.marked(inputs)));
         let wrong = [found.as_ref().err(), compared.as_ref().err(), marked.as_ref().err()];
-        Faults::all(wrong.into_iter().flatten().cloned().flatten().collect())?;
+        Faults::all(told_once(wrong.into_iter().flatten().cloned().flatten()))?;
         let (found, compared) = (found?, compared?);
         let marked = marked?;
         let said = self.figures.iter().zip(&marked).flat_map(|(figure, marks)| figure.warned(inputs, marks));
@@ -255,6 +255,12 @@ impl Stage for Report {
         let wanted = self.outputs().into_iter().filter(|schema| context.demand.table(&schema.name));
         wanted.map(|schema| table(&schema.name).map_err(|error| Failure::new(error.to_string()))).collect()
     }
+}
+
+/// What is wrong, each once: rows of a printed table may have theirs from one place.
+fn told_once(wrong: impl Iterator<Item = Diagnostic>) -> Vec<Diagnostic> {
+    let mut told = BTreeSet::new();
+    wrong.filter(|wrong| told.insert((wrong.place.map(|place| place.offset), wrong.message.clone()))).collect()
 }
 
 /// Adds a table and columns to the port of a stage.

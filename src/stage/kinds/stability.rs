@@ -16,7 +16,7 @@ use declare::error::{Failure, Faults};
 use declare::record::Record;
 use declare::units::{ANGLE, LENGTH, STRESS, TORQUE, in_unit};
 use declare::{Declared, Words};
-use gearmesh::gear::geometry::Side;
+use gearmesh::gear::geometry::{Rack, Side, Specification};
 use gearmesh::gear::stability::{self, AXES, Case, Model, Point, Report, Rules};
 use gearmesh::optimize::latin_hypercube;
 use studygraph::stage::steps::Steps;
@@ -256,8 +256,14 @@ impl Stage for Stability {
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::of(inputs)?;
-        let [pinion, gear] = [Side::Pinion, Side::Gear].map(|side| pair.side(side).specification.rack);
-        if pinion != gear {
+        // Of the rack of a shaped gear its addendum counts alone.
+        let counts = |side| {
+            let Specification { rack, cutter, .. } = pair.side(side).specification;
+            (rack.addendum, cutter.is_none().then_some(rack))
+        };
+        let [(pinion, cuts_pinion), (gear, cuts_gear)] = [Side::Pinion, Side::Gear].map(counts);
+        let cutting: Vec<Rack> = [cuts_pinion, cuts_gear].into_iter().flatten().collect();
+        if pinion.to_bits() != gear.to_bits() || cutting.windows(2).any(|racks| racks[0] != racks[1]) {
             return Err(Failure::new(
                 "pinion and gear have racks of their own; cases have one for both: check a geometry with one `rack`",
             ));

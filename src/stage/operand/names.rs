@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 
 use super::Operand;
-use crate::stage::formula::Formula;
+use crate::stage::formula::{Formula, names_in};
 use declare::declared::Placed;
 use declare::error::{Diagnostic, Place};
 
@@ -49,6 +49,17 @@ impl Shared {
     }
 }
 
+/// Refuses a name that no formula can have.
+///
+/// # Errors
+/// That, without its place.
+pub fn check_name(name: &str) -> Result<(), Diagnostic> {
+    if names_in(name).is_some_and(|names| names.len() == 1 && names.contains(name)) {
+        return Ok(());
+    }
+    Err(Diagnostic::new(format!("`{name}` cannot be a name in a formula")).help("use letters, digits and `_`"))
+}
+
 /// Reads what names stand for; refuses those that stand for something already.
 ///
 /// # Errors
@@ -56,6 +67,7 @@ impl Shared {
 pub fn read_operands(with: &[(String, Placed<String>)], taken: &[&str]) -> Result<Operands, Diagnostic> {
     let mut operands = Operands::new();
     for (name, given) in with {
+        check_name(name).map_err(|wrong| wrong.at(given.place))?;
         if taken.contains(&name.as_str()) {
             let message = format!("`{name}` stands for the {name} value already; choose another name");
             return Err(Diagnostic::new(message).at(given.place));

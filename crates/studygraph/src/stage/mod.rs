@@ -177,6 +177,8 @@ pub struct Named {
     pub cell: CellName,
     /// Where the study names it.
     pub place: Place,
+    /// Where it says which rows: mostly the same.
+    pub rows: Place,
     /// Whether it must be one row.
     pub is_one: bool,
     /// The dimension of what the cell is compared with, how that is written, and where.

@@ -4,6 +4,8 @@
 //! Which values a key column is going to have often follows from the study alone: names of designs, torques of an axis. A
 //! condition on another value is refused before anything runs. Must not know: which columns these are, or what they mean.
 
+use std::collections::BTreeSet;
+
 use super::Node;
 use super::blame::{Blame, Built};
 use super::named::Keys;
@@ -19,9 +21,14 @@ use declare::units::{Dimension, described, parse_unit, same_dimension};
 pub fn check(built: &[Built], blame: &mut Blame) {
     let keys = Keys::new(built.iter().flatten());
     for (at, node) in built.iter().enumerate().filter_map(|(at, one)| Some((at, one.as_ref().ok()?))) {
+        // Several cells may have their rows from one place.
+        let mut told = BTreeSet::new();
         for named in node.stage.named() {
             for found in wrong(&keys, &named) {
-                blame.put(at, found.or_at(named.place));
+                let found = found.or_at(named.place);
+                if told.insert((found.place.map(|place| place.offset), found.message.clone())) {
+                    blame.put(at, found);
+                }
             }
         }
         for found in node.stage.at_odds(&|cell| dimension(table(&keys, cell)?.1.column(&cell.column)?)) {
@@ -61,25 +68,25 @@ fn dimension(column: &Column) -> Option<Dimension> {
 }
 
 /// The conditions that fit no column, or that no row is going to meet.
-fn unmet(keys: &Keys, Named { cell, .. }: &Named, schema: &Schema) -> Vec<Diagnostic> {
+fn unmet(keys: &Keys, Named { cell, rows, .. }: &Named, schema: &Schema) -> Vec<Diagnostic> {
     let unmet = |condition: &(String, String)| {
         let (name, value) = condition;
         // That the column is missing is told of all that a stage reads.
         let column = schema.column(name)?;
         if let Err(message) = select::check_conditions(schema, std::slice::from_ref(condition)) {
-            return Some(Diagnostic::new(message));
+            return Some(Diagnostic::new(message).at(*rows));
         }
         let known = keys.of(&cell.stage, &cell.table, name)?;
         let there = select::unmet(column, value, &known)?;
         let table = quote(&format!("{}.{}", cell.stage, cell.table));
         let message = format!("no row of {table} will have {}", quote(&format!("{name}={value}")));
-        Some(Diagnostic::new(message).help(there))
+        Some(Diagnostic::new(message).at(*rows).help(there))
     };
     cell.conditions.iter().filter_map(unmet).collect()
 }
 
 /// The keys that tell rows apart where one is meant.
-fn several(keys: &Keys, Named { cell, is_one, .. }: &Named, schema: &Schema) -> Option<Diagnostic> {
+fn several(keys: &Keys, Named { cell, is_one, rows, .. }: &Named, schema: &Schema) -> Option<Diagnostic> {
     // A condition on a column that is not there was told.
     if !is_one || cell.conditions.iter().any(|(name, _)| schema.column(name).is_none()) {
         return None;
@@ -91,12 +98,16 @@ fn several(keys: &Keys, Named { cell, is_one, .. }: &Named, schema: &Schema) -> 
         .filter(|(_, values)| values.len() > 1)
         .collect();
     let (column, values) = open.first()?;
-    let rows: usize = open.iter().map(|(_, values)| values.len()).product();
+    let count: usize = open.iter().map(|(_, values)| values.len()).product();
     let table = quote(&format!("{}.{}", cell.stage, cell.table));
-    let message = format!("one row of {table} is meant, and there will be {rows} or more");
+    let message = format!("one row of {table} is meant, and there will be {count} or more");
     let names: Vec<String> = open.iter().map(|(column, _)| quote(&column.name)).collect();
     let example = select::condition(column, &values[0]);
-    Some(Diagnostic::new(message).help(format!("say which by {}, for example `{example}`", names.join(" and "))))
+    Some(
+        Diagnostic::new(message)
+            .at(*rows)
+            .help(format!("say which by {}, for example `{example}`", names.join(" and "))),
+    )
 }
 
 /// A column without numbers, or in another unit than what it is compared with.

@@ -31,6 +31,7 @@ pub fn fields(text: &str) -> Result<(Vec<KeyValue>, Place), Diagnostic> {
     let mut pairs: Vec<KeyValue> = Vec::new();
     let mut header: Option<(Vec<Column>, char, Place)> = None;
     let mut lists: Vec<(Vec<Node>, Place)> = Vec::new();
+    let mut decimals = Decimals::default();
     let mut offset = 0;
     for (number, line) in (1..).zip(text.split('\n')) {
         let here = Place { line: number, column: 1, offset, length: line.len() };
@@ -43,7 +44,8 @@ pub fn fields(text: &str) -> Result<(Vec<KeyValue>, Place), Diagnostic> {
             if cells.len() != columns.len() {
                 return Err(other_count(cells.len(), columns.len(), *separator).at(here));
             }
-            for ((cell, column), (items, _)) in cells.iter().zip(columns).zip(&mut lists) {
+            for (at, ((cell, column), (items, _))) in cells.iter().zip(columns).zip(&mut lists).enumerate() {
+                decimals.see(at, cell, *separator)?;
                 items.push(value(cell, column, *separator)?);
             }
         } else {
@@ -59,6 +61,7 @@ pub fn fields(text: &str) -> Result<(Vec<KeyValue>, Place), Diagnostic> {
             header = Some((columns, separator, here));
         }
     }
+    decimals.check_thousands()?;
     let Some((columns, _, header)) = header else {
         let start = Place { line: 1, column: 1, ..Place::default() };
         return Err(Diagnostic::new("this file has no columns").at(start).help(HEADER));
@@ -104,6 +107,74 @@ fn other_count(cells: usize, columns: usize, separator: char) -> Diagnostic {
         Diagnostic::new(message).help("with decimal commas, part columns by `;`")
     } else {
         Diagnostic::new(message).help("write every value of a line, and leave out a line that has none")
+    }
+}
+
+/// Which sign stands before decimals: a file has one.
+#[derive(Default)]
+struct Decimals {
+    /// The first number with it, and its line.
+    sign: Option<(char, usize)>,
+    /// By column.
+    seen: Vec<Commas>,
+}
+
+/// What the numbers of a column have of thousands.
+#[derive(Default)]
+struct Commas {
+    /// The first with a comma before three digits, which does not begin with 0.
+    first: Option<(String, Place)>,
+    /// Whether some number is 100 to 999 without a comma, and none is otherwise.
+    has_hundreds: bool,
+    has_others: bool,
+}
+
+impl Decimals {
+    /// # Errors
+    /// When it has another sign than a number before it.
+    fn see(&mut self, column: usize, cell: &Cell<'_>, separator: char) -> Result<(), Diagnostic> {
+        if separator == ',' {
+            return Ok(());
+        }
+        if self.seen.len() <= column {
+            self.seen.resize_with(column + 1, Commas::default);
+        }
+        let commas = &mut self.seen[column];
+        let digits = cell.text.trim_start_matches(['-', '+']);
+        let sign = [',', '.'].into_iter().find(|sign| digits.contains(*sign));
+        match digits.split_once(',') {
+            Some((whole, rest)) if rest.len() == 3 && (1..4).contains(&whole.len()) && !whole.starts_with('0') => {
+                commas.first.get_or_insert_with(|| (cell.text.to_owned(), cell.place));
+            }
+            None if sign.is_none() && digits.len() < 4 => commas.has_hundreds |= digits.len() == 3,
+            _ => commas.has_others = true,
+        }
+        let Some(sign) = sign else { return Ok(()) };
+        let (first, line) = *self.sign.get_or_insert((sign, cell.place.line));
+        if first == sign {
+            return Ok(());
+        }
+        let name = |sign| if sign == ',' { "comma" } else { "point" };
+        let message =
+            format!("{} has a {}, and a number in line {line} a {}", quote(cell.text), name(sign), name(first));
+        Err(Diagnostic::new(message)
+            .at(cell.place)
+            .help("a file has one sign before decimals, and nothing parts thousands"))
+    }
+
+    /// # Errors
+    /// When the commas of a column seem to part thousands: all stand before three digits, and numbers without one end at 999.
+    fn check_thousands(&self) -> Result<(), Diagnostic> {
+        let is_parted = |commas: &&Commas| commas.has_hundreds && !commas.has_others;
+        match self.seen.iter().filter(is_parted).find_map(|commas| commas.first.as_ref()) {
+            None => Ok(()),
+            Some((text, place)) => {
+                let message =
+                    format!("the comma of {} seems to part thousands, as it is a decimal comma here", quote(text));
+                let help = "nothing parts thousands; a decimal comma stands in some number before another count of digits than three";
+                Err(Diagnostic::new(message).at(*place).help(help))
+            }
+        }
     }
 }
 

@@ -181,7 +181,8 @@ enum Inside {
         pairs: Vec<KeyValue>,
         lines: BTreeMap<String, usize>,
         key: Option<(String, Place, bool)>,
-        merged: Vec<KeyValue>,
+        /// Before how many of the pairs `<<` stands, and what it merges.
+        merged: (usize, Vec<KeyValue>),
     },
 }
 
@@ -230,7 +231,7 @@ impl<'a> Tree<'a> {
             Event::SequenceStart(style, anchor, _) => self.begin(span, style, anchor, Inside::Sequence(Vec::new())),
             Event::MappingStart(style, anchor, _) => {
                 let inside =
-                    Inside::Mapping { pairs: Vec::new(), lines: BTreeMap::new(), key: None, merged: Vec::new() };
+                    Inside::Mapping { pairs: Vec::new(), lines: BTreeMap::new(), key: None, merged: (0, Vec::new()) };
                 self.begin(span, style, anchor, inside)
             }
             Event::SequenceEnd | Event::MappingEnd => self.end(span),
@@ -269,12 +270,10 @@ impl<'a> Tree<'a> {
                 if let Some(first) = pairs.first().filter(|_| !open.flow) {
                     open.place = first.place;
                 }
-                for pair in merged {
-                    // What the mapping says itself, and what was merged first, stands.
-                    if lines.insert(pair.key.clone(), pair.place.line).is_none() {
-                        pairs.push(pair);
-                    }
-                }
+                let (before, mut merged) = merged;
+                // What the mapping says itself, and what was merged first, stands.
+                merged.retain(|pair| lines.insert(pair.key.clone(), pair.place.line).is_none());
+                pairs.splice(before..before, merged);
                 pairs.shrink_to_fit();
                 Content::Mapping(pairs)
             }
@@ -303,7 +302,10 @@ impl<'a> Tree<'a> {
             Inside::Sequence(items) => items.push(grown.node),
             Inside::Mapping { pairs, lines, key, merged } => match key.take() {
                 None => *key = Some(new_key(grown.node, lines, text)?),
-                Some((_, place, true)) => merge(grown.node, place, merged)?,
+                Some((_, place, true)) => {
+                    merged.0 = pairs.len();
+                    merge(grown.node, place, &mut merged.1)?;
+                }
                 Some((name, place, false)) => {
                     // A value that is not there has no place of its own.
                     if matches!(&grown.node.content, Content::Scalar { text, quoted: false } if text.is_empty()) {

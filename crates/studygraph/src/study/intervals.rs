@@ -63,13 +63,19 @@ fn may_have_one(node: &Node) -> bool {
     }
 }
 
-/// The stages with which texts of a value begin: `stage.table.column`.
+/// The stages that texts of a value name: with which they begin, `stage.table[gear=pinion].column`, or, in a formula, `stage.table.column`.
 fn gather<'s>(value: &Value, stages: Stages<'s>, named: &mut BTreeSet<&'s str>) {
     match value {
         Value::Text(text) => {
             let first = text.trim().split_once('.').map(|(first, _)| first);
-            let stage = stages.pairs.iter().find(|pair| first == Some(pair.key.as_str()));
-            named.extend(stage.map(|pair| pair.key.as_str()));
+            let words = text.split(|character: char| !(character.is_alphanumeric() || "_.-".contains(character)));
+            let cells = words.filter(|word| word.matches('.').count() > 1).filter_map(|word| word.split_once('.'));
+            // In front of a name there may be a minus.
+            let in_formula =
+                cells.flat_map(|(stage, _)| stage.match_indices('-').map(|(at, _)| &stage[at + 1..]).chain([stage]));
+            for name in in_formula.chain(first) {
+                named.extend(stages.pairs.iter().map(|pair| pair.key.as_str()).find(|key| *key == name));
+            }
         }
         Value::List(entries) => entries.iter().for_each(|entry| gather(&entry.value, stages, named)),
         Value::Map(entries) => entries.iter().for_each(|(_, entry)| gather(&entry.value, stages, named)),

@@ -132,13 +132,12 @@ pub fn check_ports(built: &[Built], blame: &mut Blame) {
     // A record may name a stage twice, once rightly.
     let is_told = |node: &Node, port: &Port| {
         let are_told = |places: Vec<Place>| places.iter().any(|place| told.contains(&place.offset));
-        !told.is_empty()
-            && (told.contains(&place_of(&node.record, port).offset) || are_told(references(&node.record, port)))
+        !told.is_empty() && (told.contains(&place_of(node, port).offset) || are_told(references(&node.record, port)))
     };
     let mut edges = vec![Vec::new(); built.len()];
     for (at, node) in nodes() {
         for port in &ports[at] {
-            let place = place_of(&node.record, port);
+            let place = place_of(node, port);
             if told.contains(&place.offset) {
                 continue;
             }
@@ -166,7 +165,7 @@ pub fn check_ports(built: &[Built], blame: &mut Blame) {
             let target = match source(port, &index, &is_known, &ports) {
                 Ok(target) => target,
                 Err(found) => {
-                    blame.put(at, found.at(place_of(&node.record, port)));
+                    blame.put(at, found.at(place_of(node, port)));
                     continue;
                 }
             };
@@ -254,10 +253,12 @@ fn missing<'a>(node: &Node, want: &'a Want, outputs: &[Schema]) -> Vec<(Diagnost
 }
 
 /// Where a record says that a port is read: a reference to the stage, a text that begins with the stage, or the record itself.
-fn place_of(record: &Record, port: &Port) -> Place {
+fn place_of(node: &Node, port: &Port) -> Place {
+    let record = &node.record;
     let begins_so = |value: &Value| matches!(value, Value::Text(text) if begins(text, &port.stage));
     let found = references(record, port).first().copied();
-    found.or_else(|| find(record, &begins_so).first().copied()).unwrap_or(record.place)
+    let found = found.or_else(|| find(record, &begins_so).first().copied());
+    found.or_else(|| places_named(node, port, &|_| true).first().copied()).unwrap_or(record.place)
 }
 
 /// Where a record refers to the stage of a port.
@@ -269,25 +270,32 @@ fn references(record: &Record, port: &Port) -> Vec<Place> {
 /// column in it or beside it, else in all that begin so, else as [`place_of`].
 fn places_of(node: &Node, port: &Port, table: &str, column: Option<&str>) -> Vec<Place> {
     let record = &node.record;
-    let cells = column.map_or_else(Vec::new, |column| {
-        let is_it = |cell: &CellName| cell.stage == port.stage && cell.table == table && cell.column == column;
-        node.stage.named().into_iter().filter(|named| is_it(&named.cell)).map(|named| named.place).collect()
-    });
-    let table = format!("{}.{table}", port.stage);
+    let cells = |column: Option<&str>| {
+        let is_it = |cell: &CellName| cell.table == table && column.is_none_or(|column| cell.column == column);
+        places_named(node, port, &is_it)
+    };
+    let whole = format!("{}.{table}", port.stage);
     let texts = |test: &dyn Fn(&str) -> bool| {
-        find(record, &|value| matches!(value, Value::Text(text) if begins(text, &table) && test(text)))
+        find(record, &|value| matches!(value, Value::Text(text) if begins(text, &whole) && test(text)))
     };
     let with_column = column.map_or_else(Vec::new, |column| {
         let mut places = texts(&|text| has_word(text, column));
-        beside(record, &table, column, &mut places);
+        beside(record, &whole, column, &mut places);
         // A cell need not be written in one piece.
-        places.extend(cells);
+        places.extend(cells(Some(column)));
         places.sort_by_key(|place| place.offset);
         places.dedup_by_key(|place| place.offset);
         places
     });
     let places = if with_column.is_empty() { texts(&|_| true) } else { with_column };
-    if places.is_empty() { vec![place_of(record, port)] } else { places }
+    let places = if places.is_empty() { cells(None) } else { places };
+    if places.is_empty() { vec![place_of(node, port)] } else { places }
+}
+
+/// Where a stage names cells of what a port reads.
+fn places_named(node: &Node, port: &Port, is_it: &dyn Fn(&CellName) -> bool) -> Vec<Place> {
+    let named = node.stage.named().into_iter().filter(|named| named.cell.stage == port.stage && is_it(&named.cell));
+    named.map(|named| named.place).collect()
 }
 
 /// The places where a column stands beside its table, each a text of its own in one record.

@@ -161,7 +161,13 @@ impl Goal {
     pub fn named(&self) -> impl Iterator<Item = Named> {
         let is_one = self.targets.len() == 1 && matches!(self.subject, Subject::Cell(_));
         self.operands().filter_map(move |operand| {
-            Some(Named { cell: operand.cell()?.clone(), place: operand.place, is_one, beside: None })
+            Some(Named {
+                cell: operand.cell()?.clone(),
+                place: operand.place,
+                rows: operand.rows,
+                is_one,
+                beside: None,
+            })
         })
     }
 

@@ -80,10 +80,11 @@ impl FromCentreDistance {
 /// What the thickness of a gear is measured with.
 #[derive(Clone, Copy, Debug, PartialEq, Declared)]
 pub struct MeasuredWith {
-    /// k, teeth that a span goes over; those whose planes touch nearest the V-circle when not given.
+    /// k, teeth that a span goes over; when not given those of a `span` that says the thickness, or those whose planes touch nearest
+    /// the V-circle.
     #[declared(minimum = 1, maximum = 10_000, example = "6")]
     pub span_teeth: Option<u32>,
-    /// D_M, diameter of the balls; that of balls that touch the V-circle when not given.
+    /// D_M, diameter of the balls; when not given that of the balls that say the thickness, or of those that touch the V-circle.
     #[declared(minimum = 1e-6, maximum = 10.0, dimension = LENGTH, example = "5.25 mm")]
     pub ball_diameter: Option<f64>,
 }
@@ -337,6 +338,13 @@ impl StatedGear {
     /// When no gear like it is so thick.
     pub fn limits(&self, specification: &Specification) -> Result<Option<Limits>, GeometryError> {
         self.tooth_thickness.as_ref().map(|stated| stated.limits(specification)).transpose()
+    }
+
+    /// What its thickness is measured with: as stated, or else as that was whereby it is stated.
+    pub fn measured_with(&self) -> MeasuredWith {
+        let (span_teeth, ball_diameter) = self.tooth_thickness.as_ref().map_or((None, None), |of| of.measured_with());
+        let MeasuredWith { span_teeth: own_teeth, ball_diameter: own_diameter } = self.measured_with;
+        MeasuredWith { span_teeth: own_teeth.or(span_teeth), ball_diameter: own_diameter.or(ball_diameter) }
     }
 
     fn tip(&self, common: Tip) -> Tip {

@@ -43,7 +43,7 @@ impl<'a> ValidRow<'a> {
 pub fn columns<'a>(paired: bool) -> Columns<ValidRow<'a>> {
     let sharp = "x_min = h_a*(z_min − z)/z_min of a sharp rack whose straight flank is h_a* deep, z_min = 2 h_a*/sin² \
                  α (zhai2020, 23).";
-    let undercut = "Whether the rack cuts into the involute, whatever root is drawn.";
+    let undercut = "Whether the tool cuts into the involute, whatever root is drawn.";
     let gap = "How far the bottom of the space as drawn lies above the root circle.";
     let in_modules = "The same, in modules; 0.2 to 0.4 are usual least values.";
     let columns =
@@ -54,7 +54,12 @@ pub fn columns<'a>(paired: bool) -> Columns<ValidRow<'a>> {
         .float("profile_shift", "", "Profile shift coefficient x.", |row| row.drawn.gear.specification.profile_shift)
         .float("least_shift_sharp", "", sharp, |row| row.alone.least_shift_sharp)
         .but(|column| column.tolerance(1e-12, 1e-9))
-        .float("least_shift", "", "x_min of this rack: below it the rack undercuts.", |row| row.alone.least_shift)
+        .float(
+            "least_shift",
+            "",
+            "x_Emin of this tool: with a generating profile shift below it the tool undercuts.",
+            |row| row.alone.least_shift,
+        )
         .but(|column| column.tolerance(1e-12, 1e-9))
         .flag("undercut", undercut, |row| row.drawn.gear.undercut)
         .float("form_radius", "mm", "Where the flank begins in the profile as drawn.", |row| row.alone.form_radius)

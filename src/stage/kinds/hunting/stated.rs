@@ -124,16 +124,19 @@ impl StatedDeviations {
         Faults::all(wrong)
     }
 
-    /// F_p of each tooth \[m\]; empty where none are stated.
+    /// F_p of each tooth \[m\], of which the first has none; empty where none are stated.
     fn cumulative(&self) -> Vec<f64> {
-        let Some(single) = &self.single else { return self.cumulative.clone().map_or_else(Vec::new, |of| of.value) };
+        let from_first = |all: Vec<f64>| all.iter().map(|deviation| deviation - all[0]).collect();
+        let Some(single) = &self.single else {
+            return from_first(self.cumulative.clone().map_or_else(Vec::new, |of| of.value));
+        };
         let mean = single.value.iter().sum::<f64>() / single.value.len().max(1) as f64;
         let mut sum = 0.0;
         let summed = |deviation: &f64| {
             sum += deviation - mean;
             sum
         };
-        single.value.iter().map(summed).collect()
+        from_first(single.value.iter().map(summed).collect())
     }
 
     fn place_of_pitches(&self) -> Place {

@@ -137,8 +137,8 @@ impl ReportEntry {
     /// # Errors
     /// What is wrong with the entry, at the place of the field.
     pub fn read(number: usize, printed: &Printed, record: &Record, shared: &Shared) -> Result<Self, Diagnostic> {
-        let Printed { published: stated, of } = printed;
-        let subject = read_subject(stated, of.as_ref(), record, shared)?;
+        let Printed { published: stated, row } = printed;
+        let subject = read_subject(stated, row.as_ref(), record, shared)?;
         let is_claim = matches!(subject, Subject::Claim(..));
         let published = match (&stated.value, is_claim) {
             (Some(value), false) => Some(read_target(value, &stated.tolerance, None)?),

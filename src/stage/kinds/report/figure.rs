@@ -166,7 +166,7 @@ impl Figure {
             let (stage, table) = (stage.clone(), table.clone());
             all.clone().into_iter().map(move |(conditions, column, place)| {
                 let cell = CellName { stage: stage.clone(), table: table.clone(), conditions, column };
-                Named { cell, place, is_one: false, beside: None }
+                Named { cell, place, rows: place, is_one: false, beside: None }
             })
         };
         self.tables.iter().flat_map(of_table).collect()

@@ -6,22 +6,30 @@ use std::collections::BTreeSet;
 
 use super::stated::{PrintedRow, PrintedRowNames, PrintedTable, Published};
 use crate::stage::formula::names_in;
+use crate::stage::operand::names::check_name;
 use declare::declared::Placed;
-use declare::error::Diagnostic;
+use declare::error::{Diagnostic, Place};
 use declare::record::Record;
+use studygraph::table::select::CellName;
 
 /// Stands in a row where a column has no number.
 const NOTHING: &str = "none";
 
-/// A number to be compared, and what the cells of its formula begin with where they are columns alone.
+/// A number to be compared.
 pub struct Printed {
     pub published: Published,
+    /// Of a number of a printed table.
+    pub row: Option<Row>,
+}
+
+pub struct Row {
+    /// What its cells begin with where they are columns alone.
     pub of: Option<Placed<String>>,
 }
 
 impl From<Published> for Printed {
     fn from(published: Published) -> Self {
-        Self { published, of: None }
+        Self { published, row: None }
     }
 }
 
@@ -44,10 +52,12 @@ pub fn entries<'a>(table: &PrintedTable, record: &'a Record) -> Vec<Result<(Prin
             Err(wrong) => entries.push(Err(wrong)),
         }
     }
-    if entries.iter().all(Result::is_ok) {
+    let formulas = table.rows.iter().flat_map(|row| row.formula.iter().flatten());
+    let are_read = formulas.into_iter().all(|formula| names_in(&formula.value).is_some());
+    if are_read && entries.iter().all(Result::is_ok) {
         let unused = table.names.iter().flatten().filter(|(name, _)| !used.contains(name));
         entries.extend(unused.map(|named| {
-            Err(at_name(named, format!("`let` gives `{}`, but no formula of the table uses it", named.0)))
+            Err(at_name(named, record, format!("`let` gives `{}`, but no formula of the table uses it", named.0)))
         }));
     }
     entries
@@ -55,6 +65,11 @@ pub fn entries<'a>(table: &PrintedTable, record: &'a Record) -> Vec<Result<(Prin
 
 /// What is wrong with the columns of a table and with what stands for one thing in each.
 fn wrong_columns(table: &PrintedTable, record: &Record) -> Vec<Diagnostic> {
+    let begin = table.of.iter().chain(table.columns.iter().flatten().map(|(_, of)| of));
+    let wrong: Vec<Diagnostic> = begin.filter_map(|of| check_beginning(of).err()).collect();
+    if !wrong.is_empty() {
+        return wrong;
+    }
     let all = match &table.columns {
         Some(columns) if columns.len() < 2 => {
             let message = "`columns` are numbers that stand side by side, two or more; for one there is `of`";
@@ -62,18 +77,36 @@ fn wrong_columns(table: &PrintedTable, record: &Record) -> Vec<Diagnostic> {
         }
         columns => columns.as_ref().map_or(1, Vec::len),
     };
-    let wrong = table.names.iter().flatten().filter(|(_, values)| values.len() != 1 && values.len() != all);
-    wrong
+    let named = || table.names.iter().flatten();
+    let misnamed = named().filter_map(|named| Some((named, check_name(&named.0).err()?)));
+    let misnamed: Vec<_> = misnamed.map(|(named, wrong)| wrong.at(place_of(named, record))).collect();
+    if !misnamed.is_empty() {
+        return misnamed;
+    }
+    named()
+        .filter(|(_, values)| values.len() != 1 && values.len() != all)
         .map(|named| {
             let message = format!("`{}` stands for {} things in a table of {}", named.0, named.1.len(), columns(all));
-            at_name(named, message).help("write one, or one for each of `columns`")
+            at_name(named, record, message).help("write one, or one for each of `columns`")
         })
         .collect()
 }
 
-fn at_name(named: &Name, message: String) -> Diagnostic {
-    let wrong = Diagnostic::new(message);
-    named.1.first().map_or(wrong.clone(), |value| wrong.at(value.place))
+/// Refuses what no cell begins with.
+fn check_beginning(of: &Placed<String>) -> Result<(), Diagnostic> {
+    let text = of.value.trim();
+    CellName::parse(&format!("{text}.column")).map(drop).map_err(|_| {
+        let message = format!("`{text}` is not what cells begin with; write `stage.table[key=value, …]`");
+        Diagnostic::new(message).at(of.place)
+    })
+}
+
+fn at_name(named: &Name, record: &Record, message: String) -> Diagnostic {
+    Diagnostic::new(message).at(place_of(named, record))
+}
+
+fn place_of(named: &Name, record: &Record) -> Place {
+    named.1.first().map_or_else(|| record.place_of(PrintedTable::NAMES.names), |value| value.place)
 }
 
 /// What each number of a row is called beside the row's label, and what its cells begin with.
@@ -86,7 +119,7 @@ fn numbers(table: &PrintedTable, row: &PrintedRow, record: &Record) -> Result<Ve
         _ => vec![(None, table.of.as_ref())],
     };
     let all = places.len();
-    let is_printed = |value: &Placed<String>| all == 1 || value.value.trim() != NOTHING;
+    let is_printed = |value: &Placed<String>| value.value.trim() != NOTHING;
     check_counts(table, row, record, [all, row.value.iter().filter(|value| is_printed(value)).count()])?;
     if all == 1 {
         check_alone(table, row)?;
@@ -109,7 +142,7 @@ fn numbers(table: &PrintedTable, row: &PrintedRow, record: &Record) -> Result<Ve
             proof: None,
             note: row.note.clone(),
         };
-        Printed { published, of: of.cloned() }
+        Printed { published, row: Some(Row { of: of.cloned() }) }
     });
     Ok(numbers.collect())
 }
@@ -128,13 +161,13 @@ fn check_counts(
         (NAMES.formula, row.formula.as_ref().map(Vec::len), [1, all]),
         (NAMES.expected, row.expected.as_ref().map(Vec::len), [printed; 2]),
     ];
+    if printed == 0 && (row.value.is_empty() || row.value.len() == all) {
+        return Err(Diagnostic::new("the row has no number").at(record.place_of(NAMES.value)));
+    }
     for (field, count, counts) in counts {
         if let Some(count) = count.filter(|count| !counts.contains(count)) {
             return Err(miscounted(table, field, count, counts[1]).at(record.place_of(field)));
         }
-    }
-    if printed == 0 {
-        return Err(Diagnostic::new("the row has no number").at(record.place_of(NAMES.value)));
     }
     Ok(())
 }
@@ -191,7 +224,7 @@ fn with(table: &PrintedTable, formula: &str, column: usize) -> Option<Vec<(Strin
 }
 
 fn named_in<'a>(formula: &str, table: &'a PrintedTable) -> impl Iterator<Item = &'a Name> {
-    let used = names_in(formula);
+    let used = names_in(formula).unwrap_or_default();
     table.names.iter().flatten().filter(move |(name, _)| used.contains(name))
 }
 

@@ -118,6 +118,12 @@ impl Specification {
         if self.cutter.is_some() { 0.0 } else { self.module * self.rack.residual_undercut().max(0.0) }
     }
 
+    /// r_f \[m\] that its cutter leaves, if it has one that can cut it.
+    pub(crate) fn shaped_root_radius(&self) -> Option<f64> {
+        let shaping = self.cutter?.shaping(self).ok()?;
+        Some(shaping.centre_distance - shaping.tip_radius)
+    }
+
     /// ρ of the tip of its tool \[modules\].
     #[must_use]
     pub fn tool_tip_radius(&self) -> f64 {

@@ -39,6 +39,11 @@ pub trait Stated: Debug + Registrable {
     /// # Errors
     /// When the smallest is above the largest, or no gear with these teeth measures as stated.
     fn limits(&self, specification: &Specification) -> Result<Limits, GeometryError>;
+
+    /// k of the span and D_M \[m\] of the balls that it was measured with, if it was.
+    fn measured_with(&self) -> (Option<u32>, Option<f64>) {
+        (None, None)
+    }
 }
 
 registry!(THICKNESSES: Stated = Allowance, Span, OverBalls);
@@ -106,6 +111,10 @@ impl Stated for Span {
             |length: f64| specification.allowance_of(specification.profile_shift_of_span(self.teeth, length));
         Ok(Limits { largest: allowance(stated.largest), smallest: allowance(stated.smallest) })
     }
+
+    fn measured_with(&self) -> (Option<u32>, Option<f64>) {
+        (Some(self.teeth), None)
+    }
 }
 
 impl Stated for OverBalls {
@@ -119,6 +128,10 @@ impl Stated for OverBalls {
             Ok::<_, GeometryError>(specification.allowance_of(shift))
         };
         Ok(Limits { largest: allowance(stated.largest)?, smallest: allowance(stated.smallest)? })
+    }
+
+    fn measured_with(&self) -> (Option<u32>, Option<f64>) {
+        (None, Some(self.ball_diameter))
     }
 }
 

@@ -85,7 +85,7 @@ impl Mating {
         let specification = &gear.specification;
         let lowest = pair.reached_roll(side);
         let clearance = pair.centre_distance - other.tip_radius - gear.root_radius;
-        let usual = specification.module * (specification.rack.dedendum - specification.rack.addendum);
+        let usual = specification.module * (gear.dedendum() - specification.rack.addendum);
         Self {
             active_radius: gear.radius_at(pair.lowest_roll(side)),
             contact_reserve: lowest - outline.form_roll,

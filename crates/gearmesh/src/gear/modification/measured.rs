@@ -6,6 +6,7 @@
 
 mod checks;
 mod grid;
+mod outliers;
 mod smoothing;
 #[cfg(test)]
 mod tests;
@@ -100,17 +101,24 @@ impl Specified for Measured {
             (Some(rolls), None) => {
                 let lengths = lengths(&rolls);
                 let depths = self.smoothing.smoothed(&lengths, &depths);
+                checks::swings([checks::profile(self).zip(Some(&lengths[..])), None], &depths)?;
+                checks::evaluation(self, &lengths)?;
                 let values = evaluated(&PROFILE, &lengths, &depths, self.range(profile_ends), profile_ends);
                 Arc::new(Profile(Line::new(&rolls, &depths, flank_ends, values)))
             }
             (None, Some(places)) => {
                 let depths = self.smoothing.smoothed(&places, &depths);
+                checks::swings([Some((Measured::NAMES.face_positions, &places[..])), None], &depths)?;
+                checks::evaluation(self, &places)?;
                 let values = evaluated(&HELIX, &places, &depths, self.range(face_ends), face_ends);
                 Arc::new(Lead(Line::new(&places, &depths, face_ends, values)))
             }
             (Some(rolls), Some(places)) => {
                 let lengths = lengths(&rolls);
                 let depths = self.smoothing.smoothed_grid(&lengths, &places, &depths);
+                let across = Some((Measured::NAMES.face_positions, &places[..]));
+                checks::swings([checks::profile(self).zip(Some(&lengths[..])), across], &depths)?;
+                checks::evaluation(self, &lengths)?;
                 let grid = Grid::new(&rolls, &places, &depths);
                 // The trace in the middle of the face, and the one in the middle of the active flank.
                 let along: Vec<f64> = rolls.iter().map(|roll| grid.value(*roll, 0.0)).collect();

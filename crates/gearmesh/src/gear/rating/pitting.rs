@@ -25,7 +25,7 @@ pub fn zone_factor(working_angle: f64, transverse_angle: f64, base_helix_angle: 
 pub struct SingleContact {
     /// z1, z2.
     pub teeth: [f64; 2],
-    /// √(d_a²/d_b² − 1): roll angle where the flank ends towards the tip.
+    /// √(d_Na²/d_b² − 1): roll angle up to which the flank works, that of its tip usable circle.
     pub tip_roll: [f64; 2],
     /// α_wt.
     pub working_angle: f64,

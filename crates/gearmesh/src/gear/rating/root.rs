@@ -173,8 +173,8 @@ pub fn critical_section(pair: &GearPair, side: Side) -> Result<Section, Outside>
     let gear = pair.side(side);
     let Specification { teeth, module, pressure_angle, rack, .. } = gear.specification;
     let profile_shift = gear.specification.generating_profile_shift();
-    // Inside the end of the flank, along the line of action, by what is shared with another pair.
-    let length = gear.flank_end.roll * gear.base_radius - pair.base_pitch * (pair.contact_ratio - 1.0);
+    // Inside the end of the flank that works, along the line of action, by what is shared with another pair.
+    let length = pair.highest_roll(side) * gear.base_radius - pair.base_pitch * (pair.contact_ratio - 1.0);
     let load_radius = libm::hypot(length, gear.base_radius) / module;
     let notch_depth = gear.generated().map_or(0.0, |generated| generated.notch_depth);
     let grinding_notch = if notch_depth > 0.0 { notch_depth / (module * rack.notch_radius) } else { 0.0 };

@@ -90,12 +90,6 @@ const fn linear(
 
 const DEGREE: f64 = PI / 180.0;
 
-/// r_f of the rack: m(z/2 − h_fP* + x_E).
-fn rack_root_radius(specification: &Specification) -> f64 {
-    let Specification { module, teeth, rack, .. } = *specification;
-    module * (0.5 * f64::from(teeth) - rack.dedendum + specification.generating_profile_shift())
-}
-
 /// Every axis; a sample sets them in this order.
 pub const AXES: &[Axis] = &[
     logarithmic("torque", "N m", [1e-12, 1e9], |point, value| point.torque = value),
@@ -163,7 +157,13 @@ impl Point {
             teeth: both(|gear| f64::from(gear.specification.teeth)),
             shift: both(|gear| gear.specification.profile_shift),
             thickness_allowance: both(|gear| gear.specification.thickness_allowance / gear.specification.module),
-            rack: specification.rack,
+            // The one that cuts, where a cutter shapes the other gear.
+            rack: [&pair.pinion, &pair.gear]
+                .map(|gear| &gear.specification)
+                .into_iter()
+                .find(|own| own.cutter.is_none())
+                .unwrap_or(specification)
+                .rack,
             cutters: [Side::Pinion, Side::Gear].map(|side| pair.side(side).specification.cutter),
             tips: [Side::Pinion, Side::Gear].map(|side| pair.side(side).tip),
             longer: both(|gear| {
@@ -174,11 +174,7 @@ impl Point {
             }),
             contact_ratio: None,
             face_width: both(|gear| gear.specification.face_width),
-            bore: both(|gear| {
-                let own = &gear.specification;
-                let root = if own.cutter.is_some() { rack_root_radius(own) } else { gear.root_radius };
-                own.bore_radius / root
-            }),
+            bore: both(|gear| gear.specification.bore_radius / gear.root_radius),
             material: [Side::Pinion, Side::Gear].map(|side| pair.side(side).specification.material),
             torque: 0.0,
             relief: 0.0,
@@ -226,7 +222,7 @@ impl Point {
             let tip = self.module * (0.5 * teeth + rack.addendum + self.shift[side] + self.longer[side]);
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a number of teeth
             let teeth = teeth as u32;
-            Specification {
+            let bare = Specification {
                 teeth,
                 module: self.module,
                 pressure_angle: self.pressure_angle,
@@ -238,7 +234,9 @@ impl Point {
                 face_width: self.face_width[side],
                 bore_radius: self.bore[side] * root,
                 material: self.material[side],
-            }
+            };
+            let bore_radius = bare.shaped_root_radius().map_or(bare.bore_radius, |root| self.bore[side] * root);
+            Specification { bore_radius, ..bare }
         };
         Case {
             name: name.into(),

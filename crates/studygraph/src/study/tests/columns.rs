@@ -60,3 +60,20 @@ fn what_is_no_table_is_refused_at_its_line() {
     assert_eq!(refused("# z:\nx [mm]\n4\n"), "1:3: `z` has no value");
     assert_eq!(refused("# z: [1\nx [mm]\n4\n"), "1:6: `[` is opened and never closed");
 }
+
+/// A number with a comma that parts thousands would be a thousandth of what was measured.
+#[test]
+fn a_file_has_one_sign_before_decimals() {
+    let mixed = "x [mm]; y [nm]\n16.263;-531\n17.171;-1,570\n";
+    assert_eq!(refused(mixed), "3:8: `-1,570` has a comma, and a number in line 2 a point");
+    assert_eq!(
+        refused("x [mm]; y [um]\n15,1274;-1.259\n"),
+        "2:9: `-1.259` has a point, and a number in line 2 a comma"
+    );
+    let thousands = "x [mm]; y [nm]\n16;-531\n17;-1,570\n";
+    assert_eq!(refused(thousands), "3:4: the comma of `-1,570` seems to part thousands, as it is a decimal comma here");
+    // Decimals of other counts, whole numbers beyond 999, and small ones among three decimals say that it does not.
+    for column in ["531\n1,570\n2,5\n", "1531\n1,570\n", "0\n-1,570\n", "531\n0,570\n"] {
+        fields(&format!("x [mm];y [mm]\n{}", column.replace('\n', ";1\n"))).unwrap();
+    }
+}

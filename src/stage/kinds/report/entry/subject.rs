@@ -2,7 +2,7 @@
 //!
 //! Must not know: values.
 
-use super::super::printed::within;
+use super::super::printed::{Row, within};
 use super::super::stated::{Published, StatedProof};
 use crate::stage::formula::{Formula, names_in};
 use crate::stage::operand::Operand;
@@ -63,7 +63,7 @@ pub fn given(stated: &Published) -> impl Iterator<Item = (&'static str, &Placed<
 /// What is wrong with it, at its place.
 pub fn read_subject(
     stated: &Published,
-    of: Option<&Placed<String>>,
+    row: Option<&Row>,
     record: &Record,
     shared: &Shared,
 ) -> Result<Subject, Diagnostic> {
@@ -71,7 +71,10 @@ pub fn read_subject(
     let [(_, written @ Placed { value: text, place })] = given[..] else {
         let fields: Vec<&str> = given.iter().map(|(field, _)| *field).collect();
         let found = if fields.is_empty() { "none".to_owned() } else { format!("`{}`", fields.join("` and `")) };
-        let message = format!("an entry has one of `cell`, `formula` and `claim`; found {found}");
+        let (what, fields) =
+            if row.is_some() { ("a row", "`cell` and") } else { ("an entry", "`cell`, `formula` and") };
+        let last = if row.is_some() { "`formula`" } else { "`claim`" };
+        let message = format!("{what} has one of {fields} {last}; found {found}");
         return Err(Diagnostic::new(message).at(given.get(1).map_or(record.place, |(_, text)| text.place)));
     };
     let wrong = |message: String| Diagnostic::new(message).at(*place);
@@ -80,7 +83,7 @@ pub fn read_subject(
             return Err(Diagnostic::new("`with` gives names to a `formula` or `claim`, not to a `cell`")
                 .at(record.place_of(Published::NAMES.with)));
         }
-        let operand = Operand::read(written)?;
+        let operand = read_cell(written, row)?;
         return if operand.cell().is_some() {
             Ok(Subject::Cell(operand))
         } else {
@@ -88,21 +91,40 @@ pub fn read_subject(
         };
     }
     let mut with = read_operands(stated.with.as_deref().unwrap_or_default(), &[])?;
-    // Names that nothing else gives are columns of where the cells of the printed table begin.
-    if of.is_some() {
+    // In a row, names that nothing else gives are cells, or columns of where the cells of the table begin.
+    if let Some(row) = row {
         let is_given = |name: &String| shared.has(name) || with.iter().any(|(own, _)| own == name);
-        for name in names_in(text).into_iter().filter(|name| !is_given(name)).collect::<Vec<_>>() {
-            let column = within(of, Placed { value: name.clone(), place: *place });
-            with.push((name, Operand::read(&column)?));
+        let is_cell = |name: &String| !is_given(name) && (row.of.is_some() || name.contains('.'));
+        let is_unknown = |name: &String| !is_given(name) && !is_cell(name);
+        if let Some(name) = names_in(text).into_iter().flatten().find(is_unknown) {
+            let message = format!("`{name}` is not given, and the table does not say of what it is a column");
+            return Err(wrong(message).help("add `of: stage.table[key=value, …]`, or give it in `let`"));
+        }
+        for name in names_in(text).into_iter().flatten().filter(is_cell).collect::<Vec<_>>() {
+            let column = within(row.of.as_ref(), Placed { value: name.clone(), place: *place });
+            with.push((name, read_cell(&column, Some(row))?));
         }
     }
     let (formula, with) = read_formula(text, with, &[], *place, shared)?;
     match (stated.claim.is_some(), formula.is_claim()) {
         (false, false) => Ok(Subject::Formula(formula, with)),
         (true, true) => Ok(Subject::Claim(formula, with)),
+        (false, true) if row.is_some() => {
+            Err(wrong(format!("`{text}` is true or false, and a row has a number; claims stand in `published`")))
+        }
         (false, true) => Err(wrong(format!("`{text}` is true or false; call it `claim` and give no value"))),
         (true, false) => Err(wrong(format!("`{text}` is a number; a claim compares, for example `ga <= iso`"))),
     }
+}
+
+/// A cell; one that begins as those of its table do has its rows from there.
+fn read_cell(written: &Placed<String>, row: Option<&Row>) -> Result<Operand, Diagnostic> {
+    let operand = Operand::read(written)?;
+    let of = row.and_then(|row| row.of.as_ref()).filter(|of| operand.text.starts_with(of.value.trim()));
+    Ok(match of {
+        Some(of) => operand.with_rows_at(of.place),
+        None => operand,
+    })
 }
 
 /// # Errors

@@ -14,7 +14,8 @@ use declare::error::{Diagnostic, Place};
 use declare::units::Dimension;
 
 /// What helps where a bare number stands beside a quantity.
-const NAME_IT: &str = "a number in a formula has no unit; write `limit` there, and beside it `with: { limit: 3 um }`";
+const NAME_IT: &str =
+    "a number in a formula has no unit; write `limit` there, and beside it `with: { limit: 3 um }`, or in `let`";
 
 impl ReportEntry {
     /// What does not go together in its formulas; `of` has the dimension of a cell.

@@ -2,7 +2,7 @@
 //!
 //! Must not know: what a trace becomes.
 
-use super::{MOST_POINTS, Measured, Smoothing};
+use super::{MOST_POINTS, Measured, Smoothing, outliers};
 use crate::gear::geometry::Gear;
 use crate::gear::modification::flank::Flank;
 use declare::error::Diagnostic;
@@ -15,11 +15,10 @@ const SMALLEST: f64 = 0.05e-6;
 const SAME_MODULE: f64 = 1e-6;
 /// How much farther than usual two points may be apart, of so many or more.
 const GAP: f64 = 10.0;
-const FEWEST_FOR_GAPS: usize = 10;
-/// How much farther than any other point a spike stands out from its neighbours, and how far at the least \[m\].
-const SPIKE: f64 = 10.0;
-const LEAST_SPIKE: f64 = 5e-6;
-const FEWEST_FOR_SPIKES: usize = 7;
+const FEWEST_FOR_GAPS: usize = 5;
+/// A deviation beyond this share of the module is in another unit, where it is beyond that many meters too.
+const OF_MODULE: f64 = 0.1;
+const LEAST_OF_MODULE: f64 = 50e-6;
 /// By how much of the flank a trace may go beyond what there is of it, and how much of the active flank, or of the face, it must cover.
 const BEYOND: f64 = 0.05;
 const COVERED: f64 = 0.5;
@@ -68,17 +67,19 @@ pub(super) fn consistent(stated: &Measured) -> Result<(), Diagnostic> {
         );
         return Err(Diagnostic::new(message).of(Measured::NAMES.deviations).help("is the unit `mm`?"));
     }
-    let line = ways.first().map_or(count, |(_, places)| places.len());
-    for (row, values) in stated.deviations.chunks(line).enumerate() {
-        if let Some(at) = spike(values) {
-            let message = format!(
-                "deviation {} stands {} out of its neighbours, more than {SPIKE} times as far as any other: a spike",
-                row * line + at + 1,
-                micrometres(stands_out(values, at - 1, at, at + 1))
-            );
-            return Err(Diagnostic::new(message)
-                .of_item(Measured::NAMES.deviations, row * line + at)
-                .help("leave the point out, or measure the trace again"));
+    if let Some((_, places)) = ways.first() {
+        for (row, values) in stated.deviations.chunks(places.len()).enumerate() {
+            if let Some((at, beyond)) = outliers::spike(places, values) {
+                let at = row * places.len() + at;
+                let message = format!(
+                    "deviation {} stands {} out of the others, more than 10 times as far as any of them: a spike",
+                    at + 1,
+                    micrometres(beyond)
+                );
+                return Err(Diagnostic::new(message)
+                    .of_item(Measured::NAMES.deviations, at)
+                    .help("leave the point out, or measure the trace again"));
+            }
         }
     }
     if let (Some(start), Some(end)) = (stated.evaluation_start, stated.evaluation_end)
@@ -101,6 +102,11 @@ fn along(stated: &Measured) -> Vec<(&'static str, &[f64])> {
     all.into_iter().filter_map(|(name, places)| Some((name, places?))).collect()
 }
 
+/// The name of the list of points along the profile that is given.
+pub(super) fn profile(stated: &Measured) -> Option<&'static str> {
+    along(stated).first().map(|(name, _)| *name)
+}
+
 pub(super) fn no_places() -> Diagnostic {
     let wrong = Diagnostic::new("nothing says where the deviations were measured").of(Measured::NAMES.deviations);
     wrong.help(
@@ -112,7 +118,8 @@ pub(super) fn no_places() -> Diagnostic {
 fn ascending(name: &'static str, places: &[f64]) -> Result<(), Diagnostic> {
     let wrong = |message: String| Err(Diagnostic::new(message).of(name));
     if places.len() < 2 {
-        return wrong(format!("`{name}` has {} points; 2 are the fewest of a trace", places.len()));
+        let points = if places.len() == 1 { "1 point".to_owned() } else { format!("{} points", places.len()) };
+        return wrong(format!("`{name}` has {points}; 2 are the fewest of a trace"));
     }
     if let Some(at) = places.windows(2).position(|ends| ends[1].is_nan() || ends[1] <= ends[0]) {
         let falls = places.windows(2).filter(|ends| ends[1] < ends[0]).count();
@@ -150,31 +157,6 @@ fn ascending(name: &'static str, places: &[f64]) -> Result<(), Diagnostic> {
     Ok(())
 }
 
-/// How far a point stands out from the line between two others, which it is taken to be half way between.
-fn stands_out(values: &[f64], before: usize, at: usize, after: usize) -> f64 {
-    values[at] - 0.5 * (values[before] + values[after])
-}
-
-/// The point that stands out from its neighbours far more than any other does from its own, without that point.
-fn spike(values: &[f64]) -> Option<usize> {
-    if values.len() < FEWEST_FOR_SPIKES {
-        return None;
-    }
-    let inner = 1..values.len() - 1;
-    let height = |at: usize| stands_out(values, at - 1, at, at + 1).abs();
-    let candidate = inner.clone().reduce(|one, other| if height(other) > height(one) { other } else { one })?;
-    let without = |at: usize| {
-        let [before, after] = [at - 1, at + 1].map(|near| match near {
-            near if near != candidate => Some(near),
-            near if near < at => near.checked_sub(1),
-            near => Some(near + 1).filter(|far| *far < values.len()),
-        });
-        Some(stands_out(values, before?, at, after?).abs())
-    };
-    let others = inner.filter(|at| *at != candidate).filter_map(without).fold(0.0, f64::max);
-    (height(candidate) > LEAST_SPIKE && height(candidate) > SPIKE * others).then_some(candidate)
-}
-
 /// Refuses a gear that is another one than was measured.
 pub(super) fn of_this_gear(stated: &Measured, gear: &Gear) -> Result<(), Diagnostic> {
     let own = &gear.specification;
@@ -189,7 +171,50 @@ pub(super) fn of_this_gear(stated: &Measured, gear: &Gear) -> Result<(), Diagnos
         let message = format!("a gear of module {module} was measured, and this one has {own}");
         return Err(Diagnostic::new(message).of(Measured::NAMES.module));
     }
+    let most = LEAST_OF_MODULE.max(OF_MODULE * own.module);
+    match stated.deviations.iter().position(|value| value.abs() > most) {
+        None => Ok(()),
+        Some(at) => {
+            let [value, module] = [stated.deviations[at], own.module].map(millimetres);
+            let message = format!("deviation {} is {value}, more than a tenth of the module, {module}", at + 1);
+            Err(Diagnostic::new(message)
+                .of_item(Measured::NAMES.deviations, at)
+                .help("is the unit another one, or the point beside the flank?"))
+        }
+    }
+}
+
+/// Refuses points between which the flank would go far beyond what was measured; `depths` hold all of the first way's places for each of
+/// the second's.
+pub(super) fn swings(ways: [Option<(&'static str, &[f64])>; 2], depths: &[f64]) -> Result<(), Diagnostic> {
+    let [first, second] = ways;
+    let count = first.map_or(1, |(_, places)| places.len());
+    let along = first
+        .into_iter()
+        .flat_map(|(name, places)| depths.chunks(count).map(move |line| (name, places, line.to_vec())));
+    let across = second.into_iter().flat_map(|(name, places)| {
+        (0..count).map(move |column| (name, places, depths.iter().skip(column).step_by(count).copied().collect()))
+    });
+    for (name, places, line) in along.chain(across) {
+        if let Some((at, beyond)) = outliers::swing(places, &line) {
+            return Err(swing(name, places, at, beyond));
+        }
+    }
     Ok(())
+}
+
+/// The nearest two of the points beside an interval are those that make the flank steep.
+fn swing(name: &'static str, places: &[f64], at: usize, beyond: f64) -> Diagnostic {
+    let beside = at.saturating_sub(1)..(at + 2).min(places.len() - 1);
+    let step = |at: usize| places[at + 1] - places[at];
+    let near = beside.reduce(|one, other| if step(other) < step(one) { other } else { one }).unwrap_or(at);
+    let message = format!(
+        "points {} and {} of `{name}` are so near each other that the flank would swing {} beyond those around it",
+        near + 1,
+        near + 2,
+        micrometres(beyond)
+    );
+    Diagnostic::new(message).of_item(name, near + 1).help("leave one of them out, or average them")
 }
 
 /// The roll angles of the points along the profile of this gear, if there are any.
@@ -249,6 +274,27 @@ pub(super) fn face_positions(stated: &Measured, flank: &Flank) -> Result<Option<
             .help("positions count from the middle of the face; a trace of another gear fits none"));
     }
     Ok(Some(places.clone()))
+}
+
+/// Refuses an evaluation that is stated to begin or end beside the trace, or leaves nothing of it.
+pub(super) fn evaluation(stated: &Measured, places: &[f64]) -> Result<(), Diagnostic> {
+    let names = Measured::NAMES;
+    let (first, last) = (places[0], places[places.len() - 1]);
+    let slack = BEYOND * (last - first);
+    let trace = format!("the trace goes from {} to {}", millimetres(first), millimetres(last));
+    let given = [(names.evaluation_start, stated.evaluation_start), (names.evaluation_end, stated.evaluation_end)];
+    for (name, place) in given.into_iter().filter_map(|(name, place)| Some((name, place?))) {
+        if place < first - slack || place > last + slack {
+            return Err(Diagnostic::new(format!("`{name}` is {}, and {trace}", millimetres(place))).of(name));
+        }
+    }
+    let from = stated.evaluation_start.unwrap_or(first).max(first);
+    match given.into_iter().find(|(_, place)| place.is_some()) {
+        Some((name, _)) if from >= stated.evaluation_end.unwrap_or(last).min(last) => {
+            Err(Diagnostic::new(format!("the evaluation leaves nothing of the trace: {trace}")).of(name))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Refuses a smoothing that leaves nothing of what was measured over this length \[m\].

@@ -120,7 +120,7 @@ impl Rated<'_> {
         let of = |side: Side| self.pair.side(side);
         pitting::single_contact_factors(&SingleContact {
             teeth: self.both(|side| f64::from(of(side).specification.teeth)),
-            tip_roll: self.both(|side| of(side).flank_end.roll),
+            tip_roll: self.both(|side| self.pair.highest_roll(side)),
             working_angle: self.pair.working_pressure_angle,
             contact_ratio: self.pair.contact_ratio,
             overlap_ratio: 0.0,

@@ -1,6 +1,7 @@
 //! Factors one by one: what others print, closed forms, where curves meet.
 
 use super::*;
+use crate::gear::geometry::Side;
 use crate::gear::rating::bending::{
     notch_sensitivity_factor, rim_thickness_factor, size_factor, slip_layer, surface_factor,
 };
@@ -13,6 +14,7 @@ use crate::gear::rating::dynamic::{
 };
 use crate::gear::rating::life::{contact_factor, root_factor};
 use crate::gear::rating::pitting::{Film, through_hardened_factor};
+use crate::gear::rating::rate;
 use crate::gear::rating::running_in::{Deviation, allowance, mean, tip_relief};
 use declare::declared::Words;
 
@@ -28,6 +30,23 @@ const ALL: [MaterialClass; 10] = [
     MaterialClass::PearliticNodularIron,
     MaterialClass::MalleableIron,
 ];
+
+/// Tier: closed form; Z_B² and Z_D² are the products of both radii of curvature at the pitch point over those at the inner point of
+/// single contact, B of the pinion and D of the wheel, where contact is as long as tips let it and where undercut ends it.
+#[test]
+fn single_contact_factors_are_those_of_the_path_of_contact() {
+    for (teeth, is_curtailed) in [([19, 24], false), ([12, 40], true), ([13, 17], true)] {
+        let [pinion, wheel] = teeth.map(|teeth| gear(teeth, 3e-3, 0.0, 20e-3, 5e-3));
+        let pair = pair(pinion, wheel);
+        assert_eq!(pair.is_curtailed(Side::Pinion) || pair.is_curtailed(Side::Gear), is_curtailed);
+        let rated = rate(&pair, 50.0, 100.0, &without_load_factors()).unwrap();
+        let points = pair.zone_points();
+        let product = |s: f64| s * (pair.tangent_length - s);
+        for (gear, s) in rated.gears.iter().zip([points.b, points.d]) {
+            near(gear.single_contact_factor, (product(points.c) / product(s)).sqrt().max(1.0), 1e-12);
+        }
+    }
+}
 
 /// Tier: second program; `__dynamic_factor_from_range` of a Python port of gfsReboucas/Drivetrain (GitHub) for c′ 14, f_pb,eff 7,
 /// f_fα,eff 8 and C_a 20 at 400 N/mm, and others, in every range.

@@ -54,7 +54,7 @@ fn what_is_no_trace_is_refused() {
     );
     refused(|stated| stated.roll_lengths = None, "nothing says where the deviations were measured");
     refused(|stated| stated.diameters = Some(vec![60e-3, 61e-3]), "given twice, by `roll_lengths` and `diameters`");
-    refused(|stated| *lengths(stated) = vec![1e-3], "`roll_lengths` has 1 points; 2 are the fewest of a trace");
+    refused(|stated| *lengths(stated) = vec![1e-3], "`roll_lengths` has 1 point; 2 are the fewest of a trace");
     refused(
         |stated| {
             *lengths(stated) = places([2e-3, 15e-3], MOST_POINTS + 1);
@@ -65,6 +65,83 @@ fn what_is_no_trace_is_refused() {
     refused(
         |stated| (stated.evaluation_start, stated.evaluation_end) = (Some(9e-3), Some(8e-3)),
         "the evaluation ends at 8.000000 mm and starts at 9.000000 mm",
+    );
+}
+
+/// A probe falls off the tip and lands on the root, touches dirt twice, or a few times: none hides another.
+#[test]
+fn spikes_are_found_wherever_and_however_many_they_are() {
+    for (points, first) in [
+        (&[0][..], "deviation 1 stands "),
+        (&[99], "deviation 100 stands "),
+        (&[1], "deviation 2 stands "),
+        (&[50, 51], "out of the others"),
+        (&[30, 33], "out of the others"),
+        (&[10, 40, 41, 80], "out of the others"),
+    ] {
+        let change = |stated: &mut Measured| points.iter().for_each(|at| stated.deviations[*at] += 90e-6);
+        refused(change, first);
+    }
+    refused(|stated| stated.deviations[99] -= 40e-6, "deviation 100 stands ");
+    // A few points as well.
+    let few = |stated: &mut Measured| {
+        *lengths(stated) = places([2e-3, 16e-3], 9);
+        stated.deviations = vec![0.0, 1e-6, 0.0, 2e-6, 60e-6, 1e-6, 0.0, 0.0, 1e-6];
+    };
+    refused(few, "deviation 5 stands ");
+    refused(
+        |stated| {
+            *lengths(stated) = vec![2e-3, 2.1e-3, 2.2e-3, 2.3e-3, 16e-3];
+            stated.deviations = vec![0.0; 5];
+        },
+        "there is a gap between points 4 and 5 of `roll_lengths`, 137 times as wide",
+    );
+}
+
+/// Tier: invariant; the flank through points that are ever nearer each other stays within a tenth of what they deviate by, or is refused,
+/// along the profile and across the face.
+#[test]
+fn a_flank_does_not_swing_beyond_its_points() {
+    let pair = pair();
+    let mut refusals = 0;
+    for step in [1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7] {
+        let mut stated = profile(&pair, Side::Pinion, 100, |roll| 4e-6 * libm::sin(9.0 * roll));
+        let at = lengths(&mut stated)[40] + step;
+        lengths(&mut stated).insert(41, at);
+        let beside = stated.deviations[40];
+        stated.deviations.insert(41, beside + 0.5e-6);
+        let mut design = Design::default();
+        if let Err(wrong) = design.add(Gears::Pinion, &stated, &pair) {
+            assert!(wrong.message.contains("points 41 and 42 of `roll_lengths` are so near each other"), "{wrong}");
+            refusals += 1;
+            continue;
+        }
+        let flank = Flank::new(&pair, Side::Pinion);
+        let ends = [stated.roll_lengths.as_ref().unwrap()[0], *stated.roll_lengths.as_ref().unwrap().last().unwrap()];
+        let depths =
+            places(ends, 20_000).into_iter().map(|length| design.depth(Side::Pinion, length / flank.base_radius));
+        let most = depths.fold(0.0_f64, |most, depth| most.max(depth.abs()));
+        assert!(most < 1.2 * 4.5e-6, "{step}: {most}");
+    }
+    assert!((2..7).contains(&refusals), "{refusals}");
+    let face = |stated: &mut Measured| {
+        stated.roll_lengths = None;
+        stated.face_positions = Some(vec![-10e-3, -5e-3, -4.99e-3, 0.0, 5e-3, 10e-3]);
+        stated.deviations = vec![0.0, 0.0, 2e-6, 2e-6, 2e-6, 2e-6];
+    };
+    refused(face, "points 2 and 3 of `face_positions` are so near each other");
+}
+
+#[test]
+fn evaluations_beside_the_trace_are_refused() {
+    refused(
+        |stated| stated.evaluation_start = Some(30e-3),
+        "`evaluation_start` is 30.000000 mm, and the trace goes from",
+    );
+    refused(|stated| stated.evaluation_end = Some(0.18), "`evaluation_end` is 180.000000 mm, and the trace goes from");
+    refused(
+        |stated| stated.evaluation_start = lengths(stated).last().copied(),
+        "the evaluation leaves nothing of the trace",
     );
 }
 
@@ -81,6 +158,10 @@ fn traces_of_other_gears_are_refused() {
     refused(
         |stated| stated.module = Some(4e-3),
         "a gear of module 4.000000 mm was measured, and this one has 3.000000 mm",
+    );
+    refused(
+        |stated| stated.deviations.iter_mut().for_each(|value| *value *= 100.0),
+        "more than a tenth of the module, 3.000000 mm",
     );
     refused(
         |stated| (stated.roll_lengths, stated.diameters) = (None, Some(places([50e-3, 60e-3], 100))),
