@@ -126,6 +126,28 @@ fn a_study_that_says_nothing_has_figures_and_a_data_sheet() {
     assert!(between(&chart, "Depth (µm), ", "</text>").ends_with(" : 1"), "{chart}");
 }
 
+/// A gear has the tool that cut it, and nothing of the other's.
+#[test]
+fn a_data_sheet_has_each_gear_s_own_tool() {
+    let desk = Desk::with("quick.yaml");
+    let tools = "study: tools\nseed: 1\nstages:\n  pair:\n    kind: geometry\n    module: 3 mm\n    rack: { dedendum: 1.4, tip_radius: 0.3, \
+                 protuberance: 0.1, machining_allowance: 0.08 }\n    pinion: { teeth: 24, face_width: 20 mm, bore_radius: 15 mm }\n    gear: { \
+                 teeth: 36, face_width: 20 mm, bore_radius: 20 mm, pinion_cutter: { teeth: 23, profile_shift: 0.17 } }\n";
+    fs::write(desk.path("tools.yaml"), tools).unwrap();
+    desk.run(&["run", "--quiet", "tools.yaml"], 0);
+    let page = fs::read_to_string(desk.path("results/tools/report.html")).unwrap();
+    let sheet = between(&page, "<section id=\"pair\">", "</section>");
+    let values = |what: &str| -> Vec<String> {
+        let line = between(sheet, &format!(">{what}</span></th>"), "</tr>");
+        line.split("<td").skip(2).map(|cell| cell.split(['>', '<']).nth(1).unwrap_or_default().to_owned()).collect()
+    };
+    assert_eq!(values("Dedendum of the rack"), ["1.4", ""]);
+    assert_eq!(values("Protuberance of the rack"), ["0.1", ""]);
+    assert_eq!(values("Teeth of the cutter"), ["", "23"]);
+    assert_eq!(values("Profile shift coefficient of the cutter"), ["", "0.17"]);
+    assert!(!sheet.contains("Thickness allowance"), "{sheet}");
+}
+
 #[test]
 fn a_gear_alone_has_a_picture() {
     let desk = Desk::with("quick.yaml");

@@ -197,24 +197,16 @@ pub(super) fn swings(ways: [Option<(&'static str, &[f64])>; 2], depths: &[f64]) 
     });
     for (name, places, line) in along.chain(across) {
         if let Some((at, beyond)) = outliers::swing(places, &line) {
-            return Err(swing(name, places, at, beyond));
+            let message = format!(
+                "points {} and {} of `{name}` are so near each other that the flank would swing {} beyond those around it",
+                at + 1,
+                at + 2,
+                micrometres(beyond)
+            );
+            return Err(Diagnostic::new(message).of_item(name, at + 1).help("leave one of them out, or average them"));
         }
     }
     Ok(())
-}
-
-/// The nearest two of the points beside an interval are those that make the flank steep.
-fn swing(name: &'static str, places: &[f64], at: usize, beyond: f64) -> Diagnostic {
-    let beside = at.saturating_sub(1)..(at + 2).min(places.len() - 1);
-    let step = |at: usize| places[at + 1] - places[at];
-    let near = beside.reduce(|one, other| if step(other) < step(one) { other } else { one }).unwrap_or(at);
-    let message = format!(
-        "points {} and {} of `{name}` are so near each other that the flank would swing {} beyond those around it",
-        near + 1,
-        near + 2,
-        micrometres(beyond)
-    );
-    Diagnostic::new(message).of_item(name, near + 1).help("leave one of them out, or average them")
 }
 
 /// The roll angles of the points along the profile of this gear, if there are any.

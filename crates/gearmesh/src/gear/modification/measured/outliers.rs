@@ -12,6 +12,8 @@ const FEWEST_FOR_SPIKES: usize = 7;
 const FEWEST_LEFT: usize = 4;
 /// By how much of all that it deviates, and of what the points beside deviate, a flank may swing beyond these.
 const SWING: f64 = 0.1;
+/// How near two points are, over the usual distance, that a flank swings about; about others it does as splines do.
+const NEAR: f64 = 0.1;
 /// Where between two points that is looked for.
 const BETWEEN: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
 
@@ -66,21 +68,30 @@ fn straight(places: &[f64], values: &[f64], [one, other]: [usize; 2], place: f64
     values[one] + share * (values[other] - values[one])
 }
 
-/// The points between which a flank through all of them goes beyond those beside it, and how far \[m\]: they are so near each other that
-/// what they deviate by makes it steep. The worst such place.
+/// The first of two points that are so near each other that a flank through both goes beyond those around them, and how far \[m\]: what they
+/// deviate by makes it steep. The worst such place.
 pub(super) fn swing(places: &[f64], values: &[f64]) -> Option<(usize, f64)> {
+    let step = |at: usize| places[at + 1] - places[at];
+    let mut steps: Vec<f64> = (0..places.len() - 1).map(step).collect();
+    let middle = steps.len() / 2;
+    let near = NEAR * *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
     let between = |values: &[f64]| {
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);
         (least, values.iter().copied().fold(f64::NEG_INFINITY, f64::max))
     };
+    if steps.iter().all(|step| *step >= near) {
+        return None;
+    }
     let (least, most) = between(values);
     let spline = Spline::new(places, values);
-    let swings = (0..places.len() - 1).map(|at| {
+    let beyond = |at: usize| {
         let (low, high) = between(&values[at.saturating_sub(1)..(at + 3).min(values.len())]);
-        let inside = BETWEEN.map(|share| spline.value(places[at] + share * (places[at + 1] - places[at])));
+        let inside = BETWEEN.map(|share| spline.value(places[at] + share * step(at)));
         let beyond = inside.into_iter().map(|value| (low - value).max(value - high)).fold(0.0, f64::max);
-        (at, if beyond > high - low { beyond } else { 0.0 })
-    });
+        if beyond > high - low { beyond } else { 0.0 }
+    };
+    let around = |at: usize| (at.saturating_sub(1)..(at + 2).min(places.len() - 1)).map(beyond).fold(0.0, f64::max);
+    let swings = (0..places.len() - 1).filter(|at| step(*at) < near).map(|at| (at, around(at)));
     let worst = swings.reduce(|one, other| if other.1 > one.1 { other } else { one })?;
     (worst.1 > SWING * (most - least) && worst.1 > 0.0).then_some(worst)
 }
