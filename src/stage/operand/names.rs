@@ -54,7 +54,7 @@ impl Shared {
 /// # Errors
 /// That, without its place.
 pub fn check_name(name: &str) -> Result<(), Diagnostic> {
-    if names_in(name).is_some_and(|names| names.len() == 1 && names.contains(name)) {
+    if !name.contains('.') && names_in(name).is_some_and(|names| names.len() == 1 && names.contains(name)) {
         return Ok(());
     }
     Err(Diagnostic::new(format!("`{name}` cannot be a name in a formula")).help("use letters, digits and `_`"))

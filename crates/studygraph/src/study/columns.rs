@@ -40,7 +40,11 @@ pub fn fields(text: &str) -> Result<(Vec<KeyValue>, Place), Diagnostic> {
             pairs.extend(said_by(said, line, here)?);
         } else if line.trim().is_empty() {
         } else if let Some((columns, separator, _)) = &header {
-            let cells = cells(line, *separator, here);
+            let mut cells = cells(line, *separator, here);
+            // Programs end lines with what parts their values.
+            if cells.len() == columns.len() + 1 && cells.last().is_some_and(|cell| cell.text.is_empty()) {
+                cells.pop();
+            }
             if cells.len() != columns.len() {
                 return Err(other_count(cells.len(), columns.len(), *separator).at(here));
             }

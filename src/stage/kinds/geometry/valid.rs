@@ -77,7 +77,7 @@ pub fn columns<'a>(paired: bool) -> Columns<ValidRow<'a>> {
 fn of_mate(columns: Columns<ValidRow>) -> Columns<ValidRow> {
     let distance = "Least distance of the mate's tip, broken as drawn, from the root as drawn, on its whole way past \
                     it; negative where it cuts in.";
-    let shortening = "By how many modules the mate's tip is to be lower for the rack's own clearance; negative where \
+    let shortening = "By how many modules the mate's tip is to be lower for the clearance of the rack, of a shaped gear that of the depth to which it is cut; negative where \
                       there is more.";
     let reserve = "Roll angle from the form radius to where the mate's tip would reach on an involute.";
     let clearance = "Between the root circle and the mate's tip.";

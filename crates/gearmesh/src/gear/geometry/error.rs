@@ -239,8 +239,9 @@ pub enum Problem {
     },
     /// The mate's tip touches below the form radius, where there is no involute of this gear.
     #[error(
-        "interference: the mate's tip ({}) would touch {}, below the form radius {}; the mate's tip radius must be at most {}",
+        "interference: the mate's tip ({}) {}would touch {}, below the form radius {}; the mate's tip radius must be at most {}",
         beside(.mate_tip, .largest),
+        .cut.map_or_else(String::new, |depth| format!("cuts {depth} into the root: it ")),
         .reached.beside(*.form),
         .reached.form(*.form),
         beside(.largest, .mate_tip)
@@ -248,6 +249,8 @@ pub enum Problem {
     Interference {
         /// r_a of the mate \[m\].
         mate_tip: Millimetres,
+        /// How deep that cuts into the root \[m\], where nothing less is refused.
+        cut: Option<Millimetres>,
         /// How far down it touches.
         reached: Reached,
         /// Form radius of this gear \[m\].

@@ -107,8 +107,11 @@ impl GearPair {
         }
         for side in [Side::Pinion, Side::Gear] {
             let own = self.side(side);
-            if self.is_curtailed(side) && root_distance(self, side)? < -PENETRATION * own.specification.module {
-                return Err(self.interference(side));
+            if self.is_curtailed(side) {
+                let distance = root_distance(self, side)?;
+                if distance < -PENETRATION * own.specification.module {
+                    return Err(self.interference(side, Some(Millimetres(-distance))));
+                }
             }
         }
         Ok(())
@@ -134,14 +137,15 @@ impl GearPair {
     /// The first gear that has no involute where the mate's tip would touch.
     pub fn refuse_interference(&self) -> Result<(), GeometryError> {
         let curtailed = [Side::Pinion, Side::Gear].into_iter().find(|side| self.is_curtailed(*side));
-        curtailed.map_or(Ok(()), |side| Err(self.interference(side)))
+        curtailed.map_or(Ok(()), |side| Err(self.interference(side, None)))
     }
 
-    fn interference(&self, side: Side) -> GeometryError {
+    fn interference(&self, side: Side, cut: Option<Millimetres>) -> GeometryError {
         let (own, mate, roll) = (self.side(side), self.side(side.other()), self.reached_roll(side));
         let reach = self.tangent_length - own.base_radius * own.form_roll;
         GeometryError::from(Problem::Interference {
             mate_tip: Millimetres(mate.tip_radius),
+            cut,
             reached: if roll < 0.0 {
                 Reached::InsideBaseCircle
             } else {

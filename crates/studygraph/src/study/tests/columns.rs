@@ -28,6 +28,7 @@ fn columns_are_lists_and_first_lines_are_values() {
     assert_eq!(said("x [mm]; y [um]\n\n 4 ;-1\n# half way\n8,5;2e-1"), points);
     assert_eq!(said("\"x [mm]\"\ty [um]\n4\t\"-1\"\n8,5\t2e-1"), points);
     assert_eq!(said("# z: 19\n# Machine: P 40\n#\nx [-]\n1\n")[..], ["z: 19", "x: [\"`1`\"]"]);
+    assert_eq!(said("x [mm]; y [um]\n4;-1;\n8.5;2e-1;\n"), points);
     // Columns of one name follow each other.
     assert_eq!(
         said("# at: [1 mm, 2 mm]\ny [um], y [um]\n1,3\n2,4\n")[1],

@@ -71,10 +71,11 @@ pub fn read_subject(
     let [(_, written @ Placed { value: text, place })] = given[..] else {
         let fields: Vec<&str> = given.iter().map(|(field, _)| *field).collect();
         let found = if fields.is_empty() { "none".to_owned() } else { format!("`{}`", fields.join("` and `")) };
-        let (what, fields) =
-            if row.is_some() { ("a row", "`cell` and") } else { ("an entry", "`cell`, `formula` and") };
-        let last = if row.is_some() { "`formula`" } else { "`claim`" };
-        let message = format!("{what} has one of {fields} {last}; found {found}");
+        let what = match row {
+            Some(_) => "a row has one of `cell` and `formula`",
+            None => "an entry has one of `cell`, `formula` and `claim`",
+        };
+        let message = format!("{what}; found {found}");
         return Err(Diagnostic::new(message).at(given.get(1).map_or(record.place, |(_, text)| text.place)));
     };
     let wrong = |message: String| Diagnostic::new(message).at(*place);
@@ -91,19 +92,10 @@ pub fn read_subject(
         };
     }
     let mut with = read_operands(stated.with.as_deref().unwrap_or_default(), &[])?;
-    // In a row, names that nothing else gives are cells, or columns of where the cells of the table begin.
     if let Some(row) = row {
-        let is_given = |name: &String| shared.has(name) || with.iter().any(|(own, _)| own == name);
-        let is_cell = |name: &String| !is_given(name) && (row.of.is_some() || name.contains('.'));
-        let is_unknown = |name: &String| !is_given(name) && !is_cell(name);
-        if let Some(name) = names_in(text).into_iter().flatten().find(is_unknown) {
-            let message = format!("`{name}` is not given, and the table does not say of what it is a column");
-            return Err(wrong(message).help("add `of: stage.table[key=value, …]`, or give it in `let`"));
-        }
-        for name in names_in(text).into_iter().flatten().filter(is_cell).collect::<Vec<_>>() {
-            let column = within(row.of.as_ref(), Placed { value: name.clone(), place: *place });
-            with.push((name, read_cell(&column, Some(row))?));
-        }
+        let is_given = |name: &str| shared.has(name) || with.iter().any(|(own, _)| own == name);
+        let cells = cells_in(written, row, &is_given)?;
+        with.extend(cells);
     }
     let (formula, with) = read_formula(text, with, &[], *place, shared)?;
     match (stated.claim.is_some(), formula.is_claim()) {
@@ -115,6 +107,38 @@ pub fn read_subject(
         (false, true) => Err(wrong(format!("`{text}` is true or false; call it `claim` and give no value"))),
         (true, false) => Err(wrong(format!("`{text}` is a number; a claim compares, for example `ga <= iso`"))),
     }
+}
+
+/// What names in a formula of a row stand for that nothing else gives: cells, or columns of where the cells of the table begin.
+fn cells_in(
+    Placed { value: text, place }: &Placed<String>,
+    row: &Row,
+    is_given: &dyn Fn(&str) -> bool,
+) -> Result<Operands, Diagnostic> {
+    let names: Vec<String> = names_in(text).into_iter().flatten().filter(|name| !is_given(name)).collect();
+    // `new-pair.pair.base_pitch` is a difference, which nobody means.
+    let hyphened = |name: &String| {
+        let before = text.split_once(name.as_str())?.0.strip_suffix('-')?;
+        let from =
+            before.rfind(|character: char| !(character.is_alphanumeric() || character == '_')).map_or(0, |at| at + 1);
+        let word = &before[from..];
+        (name.contains('.') && !word.is_empty() && word.parse::<f64>().is_err() && !is_given(word))
+            .then(|| format!("{word}-{name}"))
+    };
+    if let Some(cell) = names.iter().find_map(hyphened) {
+        let message = format!("`{cell}` is a difference here: a stage has a `-` in its name");
+        return Err(Diagnostic::new(message).at(*place).help("give the cell a name in `let`"));
+    }
+    let cell = |name: String| {
+        if row.of.is_none() && !name.contains('.') {
+            let message = format!("`{name}` is not given, and the table does not say of what it is a column");
+            let help = "add `of: stage.table[key=value, …]`, or give it in `let`";
+            return Err(Diagnostic::new(message).at(*place).help(help));
+        }
+        let column = within(row.of.as_ref(), Placed { value: name.clone(), place: *place });
+        Ok((name, read_cell(&column, Some(row))?))
+    };
+    names.into_iter().map(cell).collect()
 }
 
 /// A cell; one that begins as those of its table do has its rows from there.

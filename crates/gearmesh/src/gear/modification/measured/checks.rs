@@ -16,12 +16,15 @@ const SAME_MODULE: f64 = 1e-6;
 /// How much farther than usual two points may be apart, of so many or more.
 const GAP: f64 = 10.0;
 const FEWEST_FOR_GAPS: usize = 5;
-/// A deviation beyond this share of the module is in another unit, where it is beyond that many meters too.
+/// A deviation beyond this share of the module, and beyond this length \[m\], is in another unit.
 const OF_MODULE: f64 = 0.1;
 const LEAST_OF_MODULE: f64 = 50e-6;
 /// By how much of the flank a trace may go beyond what there is of it, and how much of the active flank, or of the face, it must cover.
 const BEYOND: f64 = 0.05;
 const COVERED: f64 = 0.5;
+
+/// A list of places, and what it is called.
+type Way<'a> = (&'static str, &'a [f64]);
 
 /// Refuses points that no measurement has, whatever the gear.
 pub(super) fn consistent(stated: &Measured) -> Result<(), Diagnostic> {
@@ -32,7 +35,7 @@ pub(super) fn consistent(stated: &Measured) -> Result<(), Diagnostic> {
         return Err(Diagnostic::new(message).of(second).help("keep one of them"));
     }
     let across = stated.face_positions.as_deref().map(|places| (Measured::NAMES.face_positions, places));
-    let ways: Vec<(&'static str, &[f64])> = given.first().copied().into_iter().chain(across).collect();
+    let ways: Vec<Way> = given.first().copied().into_iter().chain(across).collect();
     if ways.is_empty() {
         return Err(no_places());
     }
@@ -67,19 +70,17 @@ pub(super) fn consistent(stated: &Measured) -> Result<(), Diagnostic> {
         );
         return Err(Diagnostic::new(message).of(Measured::NAMES.deviations).help("is the unit `mm`?"));
     }
-    if let Some((_, places)) = ways.first() {
-        for (row, values) in stated.deviations.chunks(places.len()).enumerate() {
-            if let Some((at, beyond)) = outliers::spike(places, values) {
-                let at = row * places.len() + at;
-                let message = format!(
-                    "deviation {} stands {} out of the others, more than 10 times as far as any of them: a spike",
-                    at + 1,
-                    micrometres(beyond)
-                );
-                return Err(Diagnostic::new(message)
-                    .of_item(Measured::NAMES.deviations, at)
-                    .help("leave the point out, or measure the trace again"));
-            }
+    for (_, places, points) in lines(&ways, count) {
+        let values: Vec<f64> = points.iter().map(|at| stated.deviations[*at]).collect();
+        if let Some((at, beyond)) = outliers::spike(places, &values) {
+            let message = format!(
+                "deviation {} stands {} out of those around it, more than 10 times as far as is usual there: a spike",
+                points[at] + 1,
+                micrometres(beyond)
+            );
+            return Err(Diagnostic::new(message)
+                .of_item(Measured::NAMES.deviations, points[at])
+                .help("leave the point out, or measure the trace again"));
         }
     }
     if let (Some(start), Some(end)) = (stated.evaluation_start, stated.evaluation_end)
@@ -91,8 +92,21 @@ pub(super) fn consistent(stated: &Measured) -> Result<(), Diagnostic> {
     Ok(())
 }
 
+/// The lines of a trace or a grid: what its places are called, the places, and which deviations are theirs. Of a grid those along the profile
+/// come first, then those across the face.
+fn lines<'a>(ways: &'a [Way<'a>], count: usize) -> impl Iterator<Item = (&'static str, &'a [f64], Vec<usize>)> {
+    let along = ways.first().map_or(1, |(_, places)| places.len());
+    ways.iter().enumerate().flat_map(move |(way, (name, places))| {
+        let of = move |line: usize| match way {
+            0 => (line * along..(line + 1) * along).collect(),
+            _ => (line..count).step_by(along).collect(),
+        };
+        (0..if way == 0 { count / along } else { along }).map(move |line| (*name, *places, of(line)))
+    })
+}
+
 /// The lists of points along the profile that are given.
-fn along(stated: &Measured) -> Vec<(&'static str, &[f64])> {
+fn along(stated: &Measured) -> Vec<Way<'_>> {
     let names = Measured::NAMES;
     let all = [
         (names.roll_lengths, stated.roll_lengths.as_deref()),
@@ -186,16 +200,10 @@ pub(super) fn of_this_gear(stated: &Measured, gear: &Gear) -> Result<(), Diagnos
 
 /// Refuses points between which the flank would go far beyond what was measured; `depths` hold all of the first way's places for each of
 /// the second's.
-pub(super) fn swings(ways: [Option<(&'static str, &[f64])>; 2], depths: &[f64]) -> Result<(), Diagnostic> {
-    let [first, second] = ways;
-    let count = first.map_or(1, |(_, places)| places.len());
-    let along = first
-        .into_iter()
-        .flat_map(|(name, places)| depths.chunks(count).map(move |line| (name, places, line.to_vec())));
-    let across = second.into_iter().flat_map(|(name, places)| {
-        (0..count).map(move |column| (name, places, depths.iter().skip(column).step_by(count).copied().collect()))
-    });
-    for (name, places, line) in along.chain(across) {
+pub(super) fn swings(ways: [Option<Way>; 2], depths: &[f64]) -> Result<(), Diagnostic> {
+    let ways: Vec<Way> = ways.into_iter().flatten().collect();
+    for (name, places, points) in lines(&ways, depths.len()) {
+        let line: Vec<f64> = points.iter().map(|at| depths[*at]).collect();
         if let Some((at, beyond)) = outliers::swing(places, &line) {
             let message = format!(
                 "points {} and {} of `{name}` are so near each other that the flank would swing {} beyond those around it",

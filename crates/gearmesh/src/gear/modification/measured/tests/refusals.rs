@@ -33,7 +33,7 @@ fn what_is_no_trace_is_refused() {
         },
         "there is a gap between points 40 and 41 of `roll_lengths`, 21 times as wide as is usual among them",
     );
-    refused(|stated| stated.deviations[30] += 60e-6, "deviation 31 stands 60.0");
+    refused(|stated| stated.deviations[30] += 60e-6, "deviation 31 stands ");
     refused(
         |stated| stated.deviations.iter_mut().for_each(|value| *value *= 1e-3),
         "no deviation is larger than 4.0e-3 um, and no measurement tells less than 0.05 um from nothing",
@@ -75,9 +75,10 @@ fn spikes_are_found_wherever_and_however_many_they_are() {
         (&[0][..], "deviation 1 stands "),
         (&[99], "deviation 100 stands "),
         (&[1], "deviation 2 stands "),
-        (&[50, 51], "out of the others"),
-        (&[30, 33], "out of the others"),
-        (&[10, 40, 41, 80], "out of the others"),
+        (&[50, 51], "out of those around it"),
+        (&[30, 33], "out of those around it"),
+        (&[10, 40, 41, 80], "out of those around it"),
+        (&[60, 61, 62], "out of those around it"),
     ] {
         let change = |stated: &mut Measured| points.iter().for_each(|at| stated.deviations[*at] += 90e-6);
         refused(change, first);
@@ -176,7 +177,7 @@ fn traces_of_other_gears_are_refused() {
     );
 }
 
-/// A kink, a step between two points and noise are no spikes.
+/// A kink, a step between two points, noise, and reliefs of a few points are no spikes.
 #[test]
 fn what_a_flank_may_be_is_taken() {
     let pair = pair();
@@ -188,4 +189,60 @@ fn what_a_flank_may_be_is_taken() {
         let stated = profile(&pair, Side::Pinion, 300, deviation);
         Design::default().add(Gears::Pinion, &stated, &pair).unwrap();
     }
+    let ends: [&[f64]; 9] = [
+        &[-6.0, -24.0, -54.0, -96.0],
+        &[-2.0, -8.0, -20.0, -49.0],
+        &[-8.0, -30.0],
+        &[-10.0, -45.0],
+        &[-50.0, -50.0],
+        &[-10.0, -20.0, -30.0],
+        &[-2.5, -20.0],
+        &[-1.0, -6.0, -16.0, -32.0, -52.0],
+        &[-20.0, -20.0, -20.0, -20.0],
+    ];
+    for (end, count) in ends.iter().flat_map(|end| [13, 30, 100].map(|count| (end, count))) {
+        let mut stated = profile(&pair, Side::Pinion, count, |_| 0.0);
+        for (at, value) in end.iter().enumerate() {
+            stated.deviations[count - end.len() + at] = 1e-6 * value;
+        }
+        for _ in 0..2 {
+            Design::default()
+                .add(Gears::Pinion, &stated, &pair)
+                .unwrap_or_else(|wrong| panic!("{end:?} of {count}: {wrong}"));
+            stated.deviations.reverse();
+        }
+    }
+}
+
+/// Tier: property; noise of any kind is none either, and a spike in it is found, beside a kink, a step and a relief too.
+#[test]
+fn spikes_are_found_in_noise_and_beside_kinks() {
+    let pair = pair();
+    let mut runner = proptest::test_runner::TestRunner::deterministic();
+    let strategy =
+        (0.05e-6..2e-6_f64, proptest::collection::vec(-1.0..1.0_f64, 60..400), 0..1000_usize, 0..4_usize, 1..=3_usize);
+    runner
+        .run(&strategy, |(noise, values, place, shape, width)| {
+            let count = values.len();
+            let mut stated = profile(&pair, Side::Pinion, count, |roll| match shape {
+                0 => 0.0,
+                1 => -300e-6 * (roll - 0.4).max(0.0),
+                2 => {
+                    if roll < 0.4 {
+                        0.0
+                    } else {
+                        -20e-6
+                    }
+                }
+                _ => -600e-6 * (roll - 0.45).max(0.0).powi(2),
+            });
+            stated.deviations.iter_mut().zip(&values).for_each(|(value, random)| *value += noise * random);
+            prop_assert!(Design::default().add(Gears::Pinion, &stated, &pair).is_ok());
+            let first = 2 + place % (count - width - 4);
+            stated.deviations[first..first + width].iter_mut().for_each(|value| *value += 60.0 * noise + 40e-6);
+            let found = Design::default().add(Gears::Pinion, &stated, &pair);
+            prop_assert!(found.is_err_and(|wrong| wrong.message.contains("a spike")));
+            Ok(())
+        })
+        .unwrap();
 }
