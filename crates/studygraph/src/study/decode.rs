@@ -182,11 +182,7 @@ impl<'a> Decoder<'a> {
     ) -> Result<PlacedValue, Diagnostic> {
         let example = words::example_of(field);
         if node.is_null() {
-            let is_needed = std::ptr::eq(shape, &raw const field.shape) && field.presence == Presence::Required;
-            let may_be_empty = matches!(shape, Shape::List(_)) && !is_needed;
-            let help = if may_be_empty { "write `[]` for an empty list" } else { field.summary };
-            let message = format!("{} has no value; {} is expected", quote(name), words::expected(shape, example));
-            return Err(Diagnostic::new(message).at(node.place).help(help));
+            return Err(words::no_value(name, shape, field).at(node.place));
         }
         let value = match shape {
             Shape::Quantity { .. } | Shape::Number { .. } => {

@@ -2,6 +2,7 @@
 //!
 //! Values come in SI and are shown in the unit in which they are shortest. Must not know: YAML, stages.
 
+use declare::error::Diagnostic;
 use declare::parameter::{Field, Presence, Shape};
 use declare::units::{Dimension, RATIO, in_unit, parse_unit, split_quantity};
 
@@ -175,6 +176,15 @@ pub fn measure(dimension: Option<Dimension>, minimum: f64, maximum: f64, such: O
             format!("{}{example}", dimension.describe().0)
         }
     }
+}
+
+/// That a field, or something in it, has no value.
+pub fn no_value(name: &str, shape: &'static Shape, field: &'static Field) -> Diagnostic {
+    let is_needed = std::ptr::eq(shape, &raw const field.shape) && field.presence == Presence::Required;
+    let may_be_empty = matches!(shape, Shape::List(_)) && !is_needed;
+    let help = if may_be_empty { "write `[]` for an empty list" } else { field.summary };
+    let message = format!("{} has no value; {} is expected", quote(name), expected(shape, example_of(field)));
+    Diagnostic::new(message).help(help)
 }
 
 /// What a shape holds, as the subject of "is expected"; `such` is an example.
