@@ -1022,9 +1022,11 @@ class MeasuredWith(Declared):
     Parameters
     ----------
     span_teeth : int, optional
-        k, teeth that a span goes over; those whose planes touch nearest the V-circle when not given. 1 to 10000.
+        k, teeth that a span goes over; when not given those of a `span` that says the thickness, or those whose
+        planes touch nearest the V-circle. 1 to 10000.
     ball_diameter : number [m], optional
-        D_M, diameter of the balls; that of balls that touch the V-circle when not given. 1e-06 to 10 m.
+        D_M, diameter of the balls; when not given that of the balls that say the thickness, or of those that touch
+        the V-circle. 1e-06 to 10 m.
     """
 
     def __init__(
