@@ -4,7 +4,6 @@
 //! off by fades by 2 − √3 from point to point. Source: de Boor, A Practical Guide to Splines, chapter IV. Must not know: what
 //! is interpolated.
 
-mod row;
 mod sum;
 #[cfg(test)]
 mod tests;
@@ -17,12 +16,10 @@ pub struct Spline {
     /// The lower end of each interval, and the cubic of the distance from there: beside each other, since a search reads both.
     pieces: Vec<[f64; 5]>,
     index: Index,
-    /// The least and the largest second derivative.
-    bends_between: [f64; 2],
+    /// The least second derivative.
+    least_bend: f64,
     /// The first and the last knot.
     between: [f64; 2],
-    /// How short its waves are.
-    shortest: f64,
     /// Intervals at whose lower end derivatives may jump, ascending; of sums.
     jumps: Vec<usize>,
 }
@@ -49,24 +46,18 @@ impl Spline {
             knots: knots.to_vec(),
             pieces,
             index: Index::new(knots),
-            bends_between: [0.0; 2],
+            least_bend: 0.0,
             between: [knots[0], knots[knots.len() - 1]],
-            shortest: f64::INFINITY,
             jumps: Vec::new(),
         };
-        spline.find_bends();
-        let [low, high] = spline.bends_between;
-        let third = spline.pieces.iter().fold(0.0_f64, |most, piece| most.max(piece[4].abs()));
-        if third > 0.0 {
-            spline.shortest = low.abs().max(high.abs()) / (6.0 * third);
-        }
+        spline.find_least_bend();
         spline
     }
 
-    fn find_bends(&mut self) {
-        let mut between = [f64::INFINITY, f64::NEG_INFINITY];
-        self.visit_bends(|_, bend| between = [between[0].min(bend), between[1].max(bend)]);
-        self.bends_between = between;
+    fn find_least_bend(&mut self) {
+        let mut least = f64::INFINITY;
+        self.visit_bends(|_, bend| least = least.min(bend));
+        self.least_bend = least;
     }
 
     /// Visits the knots, with the second derivative at each, between which it is straight; where it jumps, with both.
@@ -89,13 +80,7 @@ impl Spline {
     /// The least second derivative.
     #[must_use]
     pub fn least_bend(&self) -> f64 {
-        self.bends_between[0]
-    }
-
-    /// The largest second derivative.
-    #[must_use]
-    pub fn most_bend(&self) -> f64 {
-        self.bends_between[1]
+        self.least_bend
     }
 
     /// The first and the last knot.
@@ -119,15 +104,12 @@ impl Spline {
         [c0 + t * (c1 + t * (c2 + t * c3)), c1 + t * (2.0 * c2 + 3.0 * t * c3), 2.0 * c2 + 6.0 * t * c3]
     }
 
-    /// The same, but beyond its ends what it is there, without slope.
+    /// The coefficients over the distance from `x` of the cubic that `inside` lies on.
     #[must_use]
-    #[inline]
-    pub fn held_rates(&self, x: f64) -> [f64; 3] {
-        let [first, last] = self.between;
-        if x < first || x > last {
-            return [self.value(if x < first { first } else { last }), 0.0, 0.0];
-        }
-        self.rates(x)
+    pub fn cubic(&self, x: f64, inside: f64) -> [f64; 4] {
+        let [from, c0, c1, c2, c3] = *self.piece(inside);
+        let t = x - from;
+        [c0 + t * (c1 + t * (c2 + t * c3)), c1 + t * (2.0 * c2 + 3.0 * t * c3), c2 + 3.0 * t * c3, c3]
     }
 
     /// The value at `x`.
@@ -136,45 +118,6 @@ impl Spline {
         let [from, c0, c1, c2, c3] = *self.piece(x);
         let t = x - from;
         c0 + t * (c1 + t * (c2 + t * c3))
-    }
-
-    /// Visits the ends of stretches between its own ends, with what it is no less than on each, and not much more: the least of the points that
-    /// span each of its cubics (Bernstein's form), or `negligible` less than at both ends of stretches that are long enough for that.
-    #[inline]
-    pub fn visit_least(&self, negligible: f64, mut visit: impl FnMut(f64, f64)) {
-        let [low, high] = self.between;
-        let lower = |one: f64, other: f64| if one < other { one } else { other };
-        let length = (8.0 * negligible / self.most_bend().max(0.0)).sqrt();
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // not below 0
-        let count = ((high - low) / length).ceil().max(1.0) as usize;
-        if self.jumps.is_empty() && 2 * count < self.pieces.len() {
-            let mut before = self.value(low);
-            for at in 1..=count {
-                let place = low + (high - low) * at as f64 / count as f64;
-                let value = self.value(place);
-                visit(place, lower(before, value) - negligible);
-                before = value;
-            }
-            return;
-        }
-        let mut of = |[begin, c0, c1, c2, _]: [f64; 5], next: f64, end: f64| {
-            let third = (next - begin) * (1.0 / 3.0);
-            let one = c0 + third * c1;
-            let other = one + third * (c1 + 3.0 * third * c2);
-            visit(next, lower(lower(c0, one), lower(other, end)));
-        };
-        for ends in self.pieces.windows(2) {
-            of(ends[0], ends[1][0], ends[1][1]);
-        }
-        let last = self.knots[self.pieces.len()];
-        of(self.pieces[self.pieces.len() - 1], last, self.value(last));
-    }
-
-    /// The largest second derivative over the largest third one, without their signs: of waves of one length that over 2π. Without bound
-    /// for a parabola.
-    #[must_use]
-    pub fn shortest(&self) -> f64 {
-        self.shortest
     }
 
     /// The slope at every knot.

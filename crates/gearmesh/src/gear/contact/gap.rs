@@ -8,20 +8,18 @@
 use super::separation::{Facing, Touch};
 use crate::gear::geometry::{GearPair, Side};
 use crate::gear::modification::section::Profiles;
-use bends::may_be_rough;
+use bends::{crests, may_be_rough};
 use beyond::Turn;
+use branch_and_bound::Search;
 use outline::Outline;
-use rough::Rough;
 
 mod bends;
 mod beyond;
+mod branch_and_bound;
 mod convex;
 mod copy;
 mod outline;
-mod rough;
 
-/// Where the search for a minimum stops, in pieces; the error of the gap is of second order in it.
-const PLACE: f64 = 1e-6;
 /// Places between two known breaks, as shares of the way, at which the spot of contact is determined: denser towards
 /// both ends, since the least relief lasts only for a moment.
 const PROBES: [f64; 11] = {
@@ -61,10 +59,10 @@ pub struct Gaps<'a> {
     /// The contact lies ahead of the line of action: the gear's flank points before the pinion's flank, and the reverse.
     ways: [Way<'a>; 2],
     modified: bool,
-    /// Whether no profile bends back.
+    /// Whether the gap has one lowest place, since no profile bends back, or less than the separation bends.
     is_convex: bool,
-    /// What flanks are searched by that bend back more than the separation bends.
-    rough: Option<Rough>,
+    /// On how many stretches both flanks bend back more than the separation bends, where one is a spline; one where they only kink back.
+    crests: usize,
 }
 
 #[derive(Clone, Debug)]
@@ -86,27 +84,19 @@ fn pulled(touch: &Touch, point: [f64; 3], flank: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// The state of a search: the current point, its smooth piece, and the least gap so far.
-struct Search<'a, 'b> {
-    way: &'b Way<'a>,
-    nominal: f64,
-    pieces: [usize; 2],
-    minimum: (f64, Spot),
-}
-
 impl<'a> Gaps<'a> {
     /// `profiles` of one section across the face.
     #[must_use]
     pub fn new(pair: &GearPair, profiles: &Profiles<'a>) -> Self {
         let gaps = Self::of(pair, profiles);
-        if gaps.is_convex || gaps.rough.is_some() { gaps } else { gaps.thorough() }
+        if gaps.is_convex { gaps } else { gaps.thorough() }
     }
 
     fn of(pair: &GearPair, [pinion, gear]: &Profiles<'a>) -> Self {
         let facings = [Side::Gear, Side::Pinion].map(|side| Facing::new(pair, side));
         let (point, flank) = (Outline::new(gear, facings[0], true), Outline::new(pinion, facings[0], false));
-        let may_be_rough = may_be_rough(&facings[0], &point, &flank);
-        let is_convex = point.is_convex() && flank.is_convex();
+        let are_convex = point.is_convex() && flank.is_convex();
+        let is_convex = are_convex && !may_be_rough(&facings[0], &point, &flank);
         let (flank_too, point_too) = (point.mirrored(facings[1]), flank.mirrored(facings[1]));
         let turn = Turn::default();
         let mut ways = [
@@ -117,14 +107,14 @@ impl<'a> Gaps<'a> {
         for way in ways.iter_mut().filter(|way| modified && way.facing.round > 0.0) {
             way.turn = way.turned();
         }
-        let rough = if may_be_rough { Rough::new(pair, &ways, is_convex) } else { None };
-        Self { ways, modified, is_convex: is_convex && rough.is_none(), rough }
+        let crests = if is_convex { 0 } else { crests(&ways).max(usize::from(!are_convex && ways[0].is_sampled())) };
+        Self { ways, modified, is_convex, crests }
     }
 
     /// For a search that needs no convexity.
     fn thorough(mut self) -> Self {
         for outline in self.ways.iter_mut().flat_map(|way| [&mut way.point, &mut way.flank]) {
-            outline.sample_minimum();
+            outline.find_cells();
         }
         Self { is_convex: false, ..self }
     }
@@ -171,13 +161,10 @@ impl<'a> Gaps<'a> {
                 if !self.modified {
                     return (gap, spot);
                 }
-                if let Some(rough) = &self.rough {
-                    return (rough.least(&self.ways, s, gap), spot);
-                }
                 return if self.is_convex {
                     way.descend(nominal, before, way.facing.flank_end(before)).unwrap_or((gap, spot))
                 } else {
-                    way.search(nominal, before, way.facing.flank_end(before), (gap, spot))
+                    Search::least(way, nominal, before, way.facing.flank_end(before), (gap, spot))
                 };
             }
         }
@@ -187,16 +174,10 @@ impl<'a> Gaps<'a> {
         if self.is_convex {
             return self.convex(s);
         }
-        if let Some(rough) = &self.rough {
-            return (rough.least(&self.ways, s, f64::INFINITY), Spot::OnLineOfAction);
-        }
         let mut minimum = (self.on_line(s), Spot::OnLineOfAction);
         for way in &self.ways {
             let nominal = nominal(way);
-            // The first check of the search, before anything is computed.
-            if way.least_from(nominal, nominal) < minimum.0 {
-                minimum = way.search(nominal, 0.0, way.facing.touch(nominal, 0.0), minimum);
-            }
+            minimum = Search::least(way, nominal, 0.0, way.facing.on_line(nominal), minimum);
         }
         minimum
     }
@@ -204,13 +185,13 @@ impl<'a> Gaps<'a> {
     /// Whether a profile is a spline through so many points that no few polynomials follow the gap.
     #[must_use]
     pub fn is_sampled(&self) -> bool {
-        self.ways[0].point.is_sampled || self.ways[0].flank.is_sampled
+        self.ways[0].is_sampled()
     }
 
     /// Between how many crests contact goes over on rough flanks.
     #[must_use]
     pub fn crests(&self) -> usize {
-        self.rough.as_ref().map_or(0, |rough| rough.crests)
+        self.crests
     }
 
     /// Path positions in `window` at which the gap is not smooth: ends of contact and of reliefs, and where the flanks
@@ -224,7 +205,7 @@ impl<'a> Gaps<'a> {
         known.sort_by(f64::total_cmp);
         known.dedup();
         // Where the contact goes over from one crest to another is told by nothing: there are as many such places as crests.
-        if !self.modified || self.rough.is_some() {
+        if !self.modified || self.crests > 0 {
             return known;
         }
         let (start, end) = (facing.start, facing.end);
@@ -296,10 +277,6 @@ impl Way<'_> {
         self.point.depth(point) + self.flank.depth(flank)
     }
 
-    fn least_from(&self, point: f64, flank: f64) -> f64 {
-        self.point.least_from(point) + self.flank.least_from(flank)
-    }
-
     /// The gap, its slope and its bend against the distance from the nominal point, on these pieces.
     fn pull(&self, nominal: f64, before: f64, touch: &Touch, pieces: [usize; 2]) -> [f64; 3] {
         let point = self.point.rates(nominal + before, pieces[0]);
@@ -333,102 +310,6 @@ impl Way<'_> {
         }
         there.curvature = wall;
         (at, there, [false, true])
-    }
-
-    /// The least of `minimum` and of what lies farther than `before` from the nominal point.
-    fn search(&self, nominal: f64, before: f64, touch: Touch, minimum: (f64, Spot)) -> (f64, Spot) {
-        let pieces = [self.point.piece(nominal + before), self.flank.piece(touch.curvature)];
-        Search { way: self, nominal, pieces, minimum }.run(before, touch)
-    }
-}
-
-impl Search<'_, '_> {
-    fn run(mut self, mut before: f64, mut touch: Touch) -> (f64, Spot) {
-        let way = self.way;
-        // The separation only grows: no farther than it alone would be too large.
-        while touch.separation + way.least_from(self.nominal + before, touch.curvature) < self.minimum.0 {
-            let [point, flank] = self.pieces;
-            let (next, at_next, ended) = way.piece_end(self.nominal, before, &touch, self.pieces);
-            if !(way.point.is_zero(point) && way.flank.is_zero(flank)) {
-                let parts = if way.point.bends_back(point) || way.flank.bends_back(flank) { 4 } else { 1 };
-                self.descend((before, touch), (next, at_next), parts);
-            }
-            (before, touch) = (next, at_next);
-            self.offer(before, &touch, if ended[1] { PieceLocation::EndOfFlank } else { PieceLocation::EndOfPoint });
-            self.pieces = [point + usize::from(ended[0]), flank + usize::from(ended[1])];
-            if self.pieces[0] >= way.point.pieces() || self.pieces[1] >= way.flank.pieces() {
-                break;
-            }
-        }
-        self.minimum
-    }
-
-    fn pull(&self, before: f64, touch: &Touch) -> (f64, f64) {
-        let [_, slope, bend] = self.way.pull(self.nominal, before, touch, self.pieces);
-        (slope, bend)
-    }
-
-    fn touch(&self, before: f64) -> Touch {
-        self.way.facing.touch(self.nominal + before, before)
-    }
-
-    fn offer(&mut self, before: f64, touch: &Touch, place: PieceLocation) {
-        let gap = touch.separation + self.way.depth(self.nominal + before, touch.curvature);
-        if gap < self.minimum.0 {
-            self.minimum = (gap, Spot::Beside { side: self.way.side, pieces: self.pieces, place });
-        }
-    }
-
-    /// Offers the minima between two places of one smooth piece, searched in equal parts.
-    fn descend(&mut self, from: (f64, Touch), to: (f64, Touch), parts: u32) {
-        let width = (to.0 - from.0) / f64::from(parts);
-        let mut lower = (from.0, self.pull(from.0, &from.1));
-        for part in 1..=parts {
-            let end = if part == parts { to.0 } else { from.0 + width * f64::from(part) };
-            let upper = (end, || self.pull(end, &if part == parts { to.1 } else { self.touch(end) }));
-            let next = if parts > 1 { Some(upper.1()) } else { None };
-            if lower.1.0 < 0.0 && next.is_none_or(|next| next.0 > 0.0) {
-                self.newton(lower, end);
-            }
-            if let Some(next) = next {
-                lower = (end, next);
-            }
-        }
-    }
-
-    /// From a place where the gap falls to where it rises again, at the latest at `end`.
-    fn newton(&mut self, (start, (slope, bend)): (f64, (f64, f64)), end: f64) {
-        let (mut lower, mut upper, mut tried_end) = (start, end, false);
-        let mut at = if bend > 0.0 { start - slope / bend } else { end };
-        for _ in 0..60 {
-            if at >= upper {
-                at = if tried_end { 0.5 * (lower + upper) } else { end };
-            } else if at <= lower {
-                at = 0.5 * (lower + upper);
-            }
-            let touch = self.touch(at);
-            let (slope, bend) = self.pull(at, &touch);
-            if at >= end {
-                tried_end = true;
-                if slope <= 0.0 {
-                    // Lowest at the end of the piece, which is looked at in any case.
-                    return;
-                }
-            }
-            if slope < 0.0 {
-                lower = at;
-            } else {
-                upper = at;
-            }
-            let next = if bend > 0.0 { at - slope / bend } else { 0.5 * (lower + upper) };
-            if (next - at).abs() <= PLACE * (end - start) || upper - lower <= PLACE * (end - start) {
-                let at = next.clamp(lower, upper);
-                let touch = self.touch(at);
-                self.offer(at, &touch, PieceLocation::Inside);
-                return;
-            }
-            at = next;
-        }
     }
 }
 

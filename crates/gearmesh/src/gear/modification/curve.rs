@@ -66,6 +66,23 @@ impl Growth {
     }
 }
 
+impl Growth {
+    /// The value at t on the unit interval, and the first and second derivative there; at 0 they may be without bound.
+    #[must_use]
+    pub(crate) fn rates(self, t: f64) -> [f64; 3] {
+        match self {
+            Self::Quadratic { linear } => {
+                [self.value(t), linear + 2.0 * (1.0 - linear) * t, 2.0 * (1.0 - linear)]
+            }
+            Self::Power { exponent } => [
+                self.value(t),
+                exponent * libm::pow(t, exponent - 1.0),
+                exponent * (exponent - 1.0) * libm::pow(t, exponent - 2.0),
+            ],
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -261,6 +261,15 @@ impl Modification for Ramp {
         Some(Quadratic { origin: start, coefficients: [0.0, linear * self.rate, bend * self.rate * self.rate] })
     }
 
+    fn profile_rates(&self, roll: f64, inside: f64) -> Option<[f64; 3]> {
+        let of = |roll: f64| (roll - self.breaks[0]) * self.rate;
+        if !(0.0..=1.0).contains(&of(inside)) {
+            return None;
+        }
+        let [value, slope, bend] = self.growth.rates(of(roll).clamp(0.0, 1.0));
+        Some([self.amount * value, self.amount * slope * self.rate, self.amount * bend * self.rate * self.rate])
+    }
+
     fn profile_breaks(&self) -> &[f64] {
         &self.breaks
     }

@@ -54,21 +54,6 @@ fn twice_the_points_are_sixteen_times_as_good() {
     }
 }
 
-/// Tier: second method; values in a row are those one by one, held beyond both ends.
-#[test]
-fn values_in_a_row_are_those_one_by_one() {
-    let spline = Spline::new(&KNOTS[1..], &VALUES[1..]);
-    for (count, step) in [(80, 0.05), (700, 0.005)] {
-        let values = spline.at_roots([-0.1, step], count);
-        assert_eq!(values.len(), count);
-        for (at, value) in (0..).zip(values) {
-            let square: f64 = -0.1 + step * f64::from(at);
-            let exact = spline.value(square.max(0.0).sqrt().clamp(KNOTS[1], KNOTS[6]));
-            assert!((f64::from(value) - exact).abs() < 1e-6, "{square}: {value} {exact}");
-        }
-    }
-}
-
 /// Tier: second method; with its own slopes, cubics between known values and slopes are the spline.
 #[test]
 fn cubics_of_values_and_slopes_are_the_spline() {
@@ -89,30 +74,4 @@ fn cubics_of_values_and_slopes_are_the_spline() {
     assert_eq!(hermite.weights(-1.0), (0, [1.0, 0.0, 0.0, 0.0]));
     assert_eq!(hermite.weights(9.0), (5, [0.0, 1.0, 0.0, 0.0]));
     assert_eq!(hermite.knots(), KNOTS);
-}
-
-/// Tier: invariant; on every stretch that is visited the spline is no less than what is told, and hardly more: of a cubic by what its second
-/// derivative lets it leave its chord by, of long stretches by twice what is negligible.
-#[test]
-fn what_a_spline_is_no_less_than_is_hardly_less() {
-    let knots: Vec<f64> = (0..=400).map(|at| 0.01 * f64::from(at) + 2e-3 * libm::sin(f64::from(at))).collect();
-    let values: Vec<f64> = knots.iter().map(|x| libm::sin(3.0 * x) + 0.2 * libm::cos(17.0 * x)).collect();
-    let spline = Spline::new(&knots, &values);
-    for negligible in [1e-9, 1e-2] {
-        let (mut from, mut visited, mut closest) = (knots[0], 0, f64::INFINITY);
-        spline.visit_least(negligible, |to, least| {
-            let place = |at: u32| from + (to - from) * f64::from(at) / 20.0;
-            let lowest = (0..=20).map(|at| spline.value(place(at))).fold(f64::INFINITY, f64::min);
-            let bend = (0..=20).map(|at| spline.rates(place(at))[2].abs()).fold(0.0, f64::max);
-            let chord = 0.125 * (to - from) * (to - from) * bend;
-            assert!(least <= lowest + 1e-15, "{from} to {to}: {least} {lowest}");
-            assert!(
-                lowest - least <= if negligible < 1e-3 { chord } else { 2.0 * negligible },
-                "{from} to {to}: {least} {lowest}"
-            );
-            (from, visited, closest) = (to, visited + 1, closest.min(lowest - least));
-        });
-        assert!((from - knots[400]).abs() < 1e-12 && closest <= negligible);
-        assert_eq!(visited == 400, negligible < 1e-3, "{visited}");
-    }
 }

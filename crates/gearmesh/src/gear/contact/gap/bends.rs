@@ -2,6 +2,7 @@
 //!
 //! Must not know: what the points are of.
 
+use super::Way;
 use super::outline::Outline;
 use crate::gear::contact::separation::Facing;
 
@@ -22,4 +23,14 @@ pub(super) fn may_be_rough(facing: &Facing, point: &Outline, flank: &Outline) ->
     let [start, end] = [facing.start, facing.end].map(|place| facing.on_line(place).rate);
     let most = start.max(end);
     -one - other * most * most > (1.0 - LEFT) * facing.least_bend()
+}
+
+/// On how many stretches splines bend back more than the separation bends where it does so least, of both flanks.
+pub(super) fn crests(ways: &[Way; 2]) -> usize {
+    let of = |way: &Way| {
+        // Over the flank's own roll length.
+        let touch = way.facing.on_line(way.facing.start.max(0.0));
+        way.flank.crests(touch.bend / (touch.rate * touch.rate))
+    };
+    ways.iter().map(of).sum()
 }

@@ -149,7 +149,7 @@ impl Way<'_> {
         self.fall(nominal, 0.0, pieces, self.pull(nominal, 0.0, &touch, pieces), third)
     }
 
-    fn is_sampled(&self) -> bool {
+    pub(super) fn is_sampled(&self) -> bool {
         self.point.is_sampled || self.flank.is_sampled
     }
 

@@ -4,13 +4,13 @@
 
 use crate::gear::contact::separation::Facing;
 use crate::gear::modification::section::Section;
-use crate::numeric::extremum::maximum;
 use crate::numeric::quadratic::Quadratic;
 use crate::numeric::spline::Spline;
 
 mod bends;
+mod cells;
 mod known;
-pub(super) use bends::Back;
+pub(super) use cells::Cells;
 use known::Known;
 
 /// Samples of a piece that may be a wave: enough for sixteen humps.
@@ -47,8 +47,8 @@ pub(super) struct Outline<'a> {
     spline: Option<Known<'a>>,
     /// The roll angle at the position 0, and by how much it grows with the position.
     rolls: [f64; 2],
-    /// Positions, ascending, and the least depth that was sampled from there on; of profiles that may bend back.
-    minimum: Vec<(f64, f64)>,
+    /// Of profiles that may bend back.
+    cells: Cells,
 }
 
 /// A smooth one, between two cuts.
@@ -102,7 +102,7 @@ impl<'a> Outline<'a> {
             is_sampled: parts.iter().any(|part| !part.knots().is_empty()),
             spline: None,
             rolls: [0.0; 2],
-            minimum: Vec::new(),
+            cells: Cells::default(),
         }
         .turning();
         let ends = [facing.start, facing.end].map(|position| outline.roll(position));
@@ -152,7 +152,7 @@ impl<'a> Outline<'a> {
             is_sampled: self.is_sampled,
             spline: self.spline.clone(),
             rolls: self.rolls,
-            minimum: Vec::new(),
+            cells: Cells::default(),
         }
         .turning()
     }
@@ -223,29 +223,36 @@ impl<'a> Outline<'a> {
         self.cuts = cuts;
     }
 
-    /// Samples the least depth from each place on, which a search needs where a profile bends back.
-    pub(super) fn sample_minimum(&mut self) {
-        let mut samples = Vec::new();
-        for ends in self.cuts.windows(2) {
-            let place = |index: usize| share(ends, index, SAMPLES);
-            let depths: [f64; SAMPLES + 1] = std::array::from_fn(|index| self.depth(place(index)));
-            samples.extend((0..=SAMPLES).map(place).zip(depths));
-            // A valley between samples, without which a search towards it would end before it began.
-            for index in 1..SAMPLES {
-                if depths[index] < depths[index - 1] && depths[index] <= depths[index + 1] {
-                    let (from, guess, to) = (place(index - 1), place(index), place(index + 1));
-                    let (at, height) = maximum(|x| -self.depth(x), from, guess, to, 1e-7 * (to - from));
-                    samples.push((at, -height));
-                }
+    /// Cuts the profile into cells, which a search needs where it bends back.
+    pub(super) fn find_cells(&mut self) {
+        self.cells = Cells::new(self);
+    }
+
+    /// The cubic that the profile is between two positions on a piece and between its knots, over the distance from the first; none where it is
+    /// another function.
+    fn cubic(&self, piece: usize, ends: [f64; 2]) -> Option<[f64; 4]> {
+        let Piece { shape, quadratic, is_held } = &self.pieces[piece];
+        match (shape, quadratic, &self.spline) {
+            (Convexity::Zero, ..) => Some([0.0; 4]),
+            (_, Some(quadratic), _) => {
+                let [value, slope, bend] = quadratic.rates(ends[0]);
+                Some([value, slope, 0.5 * bend, 0.0])
             }
+            (_, None, Some(spline)) => {
+                let [roll, inside] = [ends[0], share(&ends, 1, 2)].map(|position| self.roll(position));
+                if *is_held {
+                    return Some([spline.value(within(spline, inside)), 0.0, 0.0, 0.0]);
+                }
+                let [_, rate] = self.rolls;
+                let [value, slope, bend, third] = spline.cubic(roll, inside);
+                Some([value, slope * rate, bend * rate * rate, third * rate * rate * rate])
+            }
+            _ => cells::fitted(self, piece, ends),
         }
-        samples.sort_by(|one, two| one.0.total_cmp(&two.0));
-        let mut minimum = f64::INFINITY;
-        for sample in samples.iter_mut().rev() {
-            minimum = minimum.min(sample.1);
-            sample.1 = minimum;
-        }
-        self.minimum = samples;
+    }
+
+    pub(super) fn cells(&self) -> &Cells {
+        &self.cells
     }
 
     /// Whether the profile bends back nowhere, at a kink neither.
@@ -290,24 +297,12 @@ impl<'a> Outline<'a> {
         if starts || self.is_zero(piece) { 0.0 } else { self.depth_on(self.cuts[piece + 1], piece) }
     }
 
-    pub(super) fn least_from(&self, position: f64) -> f64 {
-        if self.parts.is_empty() {
-            return 0.0;
-        }
-        let next = self.minimum.partition_point(|sample| sample.0 < position);
-        self.depth(position).min(self.minimum.get(next).map_or(f64::INFINITY, |sample| sample.1))
-    }
-
     pub(super) fn pieces(&self) -> usize {
         self.pieces.len()
     }
 
     pub(super) fn is_zero(&self, piece: usize) -> bool {
         self.pieces[piece].shape == Convexity::Zero
-    }
-
-    pub(super) fn bends_back(&self, piece: usize) -> bool {
-        self.pieces[piece].shape == Convexity::Other
     }
 
     pub(super) fn piece(&self, position: f64) -> usize {

@@ -1,0 +1,253 @@
+//! The least gap of flanks that bend back, by branch and bound.
+//!
+//! Both flanks are cut where one of them has a kink. Between two cuts the second derivative of S + C1 + C2 over the distance from the nominal
+//! point has a lower bound: S is convex, and those of the depths are known. Where the bound is not negative the gap is convex, and Newton's method
+//! leads to its least place. Else the gap is nowhere lower than the convex function that is less by the product of the distances from both ends times
+//! half of the bound (αBB: Adjiman et al., Computers & Chemical Engineering 22, 1998). What cannot be lower than the least gap so far is left out,
+//! the rest is halved. Must not know: load.
+//!
+//! Assumes that dS²/de², df/de and d²f/de² are between their values at both ends of a stretch; `the_separation_is_monotone` tests it.
+
+use super::outline::Cells;
+use super::{PieceLocation, Spot, Way};
+use crate::gear::contact::separation::Touch;
+
+/// By how much lower a place must be to be looked for \[m\].
+const TOLERANCE: f64 = 1e-16;
+/// Where a stretch is not halved any more, over the length of the path.
+const CLOSEST: f64 = 1e-10;
+/// The most steps of Newton's method and of halving.
+const MOST_STEPS: usize = 64;
+
+/// A place of the point before the flank.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    /// How far it is before its own position.
+    at: f64,
+    touch: Touch,
+    /// Depth, slope and bend of the point's profile over its position, and of the flank's over its own.
+    point: [f64; 3],
+    flank: [f64; 3],
+    cells: [usize; 2],
+}
+
+impl Place {
+    fn gap(&self) -> f64 {
+        self.touch.separation + self.point[0] + self.flank[0]
+    }
+
+    fn slope(&self) -> f64 {
+        self.touch.slope + self.point[1] + self.flank[1] * self.touch.rate
+    }
+
+    fn bend(&self) -> f64 {
+        let Touch { bend, rate, rate_slope, .. } = self.touch;
+        bend + self.point[2] + self.flank[2] * rate * rate + self.flank[1] * rate_slope
+    }
+}
+
+/// A search over one way at one path position.
+pub(super) struct Search<'a, 'b> {
+    way: &'b Way<'a>,
+    cells: [&'b Cells; 2],
+    nominal: f64,
+    closest: f64,
+    minimum: (f64, Spot),
+}
+
+impl<'a, 'b> Search<'a, 'b> {
+    /// The least of `minimum` and of all places farther than `before` from the nominal point.
+    pub(super) fn least(
+        way: &'b Way<'a>,
+        nominal: f64,
+        before: f64,
+        touch: Touch,
+        minimum: (f64, Spot),
+    ) -> (f64, Spot) {
+        let closest = CLOSEST * (way.facing.end - way.facing.start);
+        let mut search = Self { way, cells: [way.point.cells(), way.flank.cells()], nominal, closest, minimum };
+        search.run(before, touch);
+        search.minimum
+    }
+
+    fn place(&self, at: f64, touch: Touch, cells: [usize; 2]) -> Place {
+        let [of_point, of_flank] = self.cells;
+        Place {
+            at,
+            touch,
+            point: of_point.rates(&self.way.point, self.nominal + at, cells[0]),
+            flank: of_flank.rates(&self.way.flank, touch.curvature, cells[1]),
+            cells,
+        }
+    }
+
+    /// A place among these cells.
+    fn inside(&self, at: f64, [point, flank]: [[usize; 2]; 2]) -> Place {
+        let touch = self.way.facing.touch(self.nominal + at, at);
+        let cells = [self.cells[0].cell(self.nominal + at, point), self.cells[1].cell(touch.curvature, flank)];
+        self.place(at, touch, cells)
+    }
+
+    fn offer(&mut self, gap: f64, cells: [usize; 2], place: PieceLocation) {
+        if gap < self.minimum.0 {
+            let pieces = [0, 1].map(|of| self.cells[of].piece(cells[of]));
+            self.minimum = (gap, Spot::Beside { side: self.way.side, pieces, place });
+        }
+    }
+
+    fn run(&mut self, before: f64, touch: Touch) {
+        let [point, flank] = self.cells;
+        let mut cells = [
+            point.cell(self.nominal + before, [0, point.count() - 1]),
+            flank.cell(touch.curvature, [0, flank.count() - 1]),
+        ];
+        let (mut at, mut touch) = (before, touch);
+        loop {
+            // The separation only grows.
+            if touch.separation + point.least_from(cells[0]) + flank.least_from(cells[1]) >= self.minimum.0 - TOLERANCE
+            {
+                return;
+            }
+            let corners = [point.next_corner(cells[0]), flank.next_corner(cells[1])];
+            let (end, at_end, ended) = self.next_cut(at, &touch, [point.end(corners[0]), flank.end(corners[1])]);
+            let last = [0, 1].map(|of| {
+                let position = if of == 0 { self.nominal + end } else { at_end.curvature };
+                if ended[of] { corners[of] - 1 } else { self.cells[of].cell(position, [cells[of], corners[of] - 1]) }
+            });
+            let [from, to] = [self.place(at, touch, cells), self.place(end, at_end, last)];
+            let place = if ended[1] { PieceLocation::EndOfFlank } else { PieceLocation::EndOfPoint };
+            self.offer(to.gap(), last, place);
+            self.branch(&from, &to);
+            cells = [0, 1].map(|of| if ended[of] { corners[of] } else { last[of] });
+            if cells[0] >= point.count() || cells[1] >= flank.count() {
+                return;
+            }
+            (at, touch) = (end, at_end);
+        }
+    }
+
+    /// The nearer one of the positions at which the point's profile and the flank's have their next corners.
+    fn next_cut(&self, from: f64, touch: &Touch, [cut, wall]: [f64; 2]) -> (f64, Touch, [bool; 2]) {
+        let last = (cut - self.nominal).max(from);
+        let facing = &self.way.facing;
+        let at_last = facing.touch(cut, last);
+        if at_last.curvature <= wall {
+            return (last, at_last, [true, false]);
+        }
+        // Half the square of the curvature is almost straight in the distance.
+        let (mut at, mut there) = (from, *touch);
+        for _ in 0..30 {
+            let step = (wall * wall - there.curvature * there.curvature) / (2.0 * there.curvature * there.rate);
+            at = (at + step).clamp(from, last);
+            there = facing.touch(self.nominal + at, at);
+            if step.abs() <= 1e-13 * facing.end {
+                break;
+            }
+        }
+        there.curvature = wall;
+        (at, there, [false, true])
+    }
+
+    /// Searches between two places with no corner in between, whose gaps are known.
+    fn branch(&mut self, from: &Place, to: &Place) {
+        let width = to.at - from.at;
+        let cells = [0, 1].map(|of| [from.cells[of], to.cells[of]]);
+        let least = self.cells[0].least(cells[0]) + self.cells[1].least(cells[1]);
+        if from.touch.separation + least >= self.minimum.0 - TOLERANCE || width <= self.closest {
+            return;
+        }
+        let Bound { least_bend, slopes, is_exact } = self.bound(from, to, cells);
+        // Of the convex function below the gap.
+        let [falls, rises] = [slopes[0] + 0.5 * width * least_bend.min(0.0), slopes[1] - 0.5 * width * least_bend.min(0.0)];
+        if falls >= 0.0 || rises <= 0.0 {
+            return;
+        }
+        if lowest_of_tangents([from.gap(), falls], [to.gap(), rises], width) >= self.minimum.0 - TOLERANCE {
+            return;
+        }
+        if least_bend >= 0.0 && is_exact {
+            self.descend(*from, *to);
+            return;
+        }
+        let middle = self.inside(0.5 * (from.at + to.at), cells);
+        self.offer(middle.gap(), middle.cells, PieceLocation::Inside);
+        self.branch(from, &middle);
+        self.branch(&middle, to);
+    }
+
+    /// A lower bound of the second derivative of the gap, or of a function below it, and the slopes of that at both ends.
+    fn bound(&self, from: &Place, to: &Place, cells: [[usize; 2]; 2]) -> Bound {
+        let rate = [from.touch.rate, to.touch.rate];
+        let [slow, fast] = [rate[0].min(rate[1]), rate[0].max(rate[1])];
+        let of_point = self.cells[0].least_bend(cells[0], [from.point[2], to.point[2]]);
+        let of_flank = self.cells[1].least_bend(cells[1], [from.flank[2], to.flank[2]]);
+        let rise = [to.point[0] - from.point[0], to.flank[0] - from.flank[0]];
+        let along = to.touch.curvature - from.touch.curvature;
+        let point_slopes = of_point.map_or([rise[0] / (to.at - from.at); 2], |_| [from.point[1], to.point[1]]);
+        let flank_slopes = of_flank.map_or([rise[1] / along; 2], |_| [from.flank[1], to.flank[1]]);
+        let flank_bend = of_flank.unwrap_or(0.0);
+        // Between which slopes the flank's profile stays.
+        let beyond = (-flank_bend).max(0.0) * along;
+        let between =
+            [flank_slopes[0].min(flank_slopes[1]) - beyond, flank_slopes[0].max(flank_slopes[1]) + beyond];
+        let products = between.map(|slope| {
+            (slope * from.touch.rate_slope).min(slope * to.touch.rate_slope)
+        });
+        let stretched = if flank_bend < 0.0 { fast * fast } else { slow * slow };
+        Bound {
+            least_bend: from.touch.bend.min(to.touch.bend)
+                + of_point.unwrap_or(0.0)
+                + flank_bend * stretched
+                + products[0].min(products[1]),
+            slopes: [
+                from.touch.slope + point_slopes[0] + flank_slopes[0] * from.touch.rate,
+                to.touch.slope + point_slopes[1] + flank_slopes[1] * to.touch.rate,
+            ],
+            is_exact: of_point.is_some() && of_flank.is_some(),
+        }
+    }
+
+    /// Down to the least place of a convex stretch, from both ends of which the gap falls.
+    fn descend(&mut self, mut low: Place, mut high: Place) {
+        let cells = [0, 1].map(|of| [low.cells[of], high.cells[of]]);
+        let mut nearer = if low.slope().abs() < high.slope().abs() { low } else { high };
+        for step in 0..MOST_STEPS {
+            let newton = -nearer.slope() / nearer.bend();
+            let next = nearer.at + newton;
+            let next = if next > low.at && next < high.at && step % 4 != 3 {
+                next
+            } else {
+                0.5 * (low.at + high.at)
+            };
+            if !(next > low.at && next < high.at) {
+                return;
+            }
+            nearer = self.inside(next, cells);
+            let (gap, slope, bend) = (nearer.gap(), nearer.slope(), nearer.bend());
+            // Of so short a step a parabola tells all.
+            let left = if bend > 0.0 && bend.is_finite() { 0.5 * slope * slope / bend } else { f64::INFINITY };
+            if left <= TOLERANCE {
+                self.offer(gap - left, nearer.cells, PieceLocation::Inside);
+                return;
+            }
+            self.offer(gap, nearer.cells, PieceLocation::Inside);
+            *(if slope < 0.0 { &mut low } else { &mut high }) = nearer;
+            let ends = [[low.gap(), low.slope()], [high.gap(), high.slope()]];
+            if lowest_of_tangents(ends[0], ends[1], high.at - low.at) >= self.minimum.0 - TOLERANCE {
+                return;
+            }
+        }
+    }
+}
+
+struct Bound {
+    least_bend: f64,
+    slopes: [f64; 2],
+    /// Whether it is that of the gap itself.
+    is_exact: bool,
+}
+
+/// Where the tangents at both ends of a stretch meet, of a function that falls from both: it is nowhere lower if it is convex.
+fn lowest_of_tangents([from, falls]: [f64; 2], [to, rises]: [f64; 2], width: f64) -> f64 {
+    from + falls * ((to - from - rises * width) / (falls - rises))
+}

@@ -1,0 +1,256 @@
+//! A profile in cells, each a cubic or a curve that bends one way, with bounds for a search by branch and bound.
+//!
+//! Must not know: the other flank, how places are searched.
+
+use super::{Outline, share};
+
+/// Samples that say where a curve that is no cubic changes the sign of its second derivative.
+const SAMPLES: usize = 64;
+/// Shares of a cell at which a cubic is fitted, and at which it must agree with the profile.
+const FITTED: [f64; 4] = [0.1, 0.35, 0.65, 0.9];
+const CHECKED: [f64; 3] = [0.02, 0.5, 0.98];
+/// By how much of the largest depth of a cell a cubic may be off.
+const CUBIC_TOLERANCE: f64 = 1e-12;
+/// By how much of the largest slope of a profile slopes of two cells may differ by rounding where they meet.
+const SLOPE_TOLERANCE: f64 = 1e-10;
+/// Cells in a block, of which least values are known together.
+const BLOCK: usize = 16;
+
+/// All cells between the ends of a flank.
+#[derive(Clone, Debug, Default)]
+pub(in super::super) struct Cells {
+    /// Where each begins, and the last one ends, ascending.
+    ends: Vec<f64>,
+    cells: Vec<Cell>,
+    /// Whether the profile has a kink, or is not known to be smooth, where each begins or the last one ends.
+    corners: Vec<bool>,
+    /// Lower bounds of the depth and of its second derivative at the beginning of each cell, over blocks of cells.
+    blocks: Vec<[f64; 2]>,
+    /// A lower bound of the depth from each cell on.
+    from: Vec<f64>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    shape: Shape,
+    /// The piece of the outline on which it lies.
+    piece: usize,
+    /// A lower bound of the depth.
+    least: f64,
+    /// The second derivative at both ends.
+    bends: [f64; 2],
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Shape {
+    /// Coefficients over the distance from its beginning.
+    Cubic([f64; 4]),
+    Convex,
+    Concave,
+    /// A curve whose second derivative changes its sign, and the least one that it may have.
+    Mixed(f64),
+}
+
+/// A lower bound of a second derivative on a stretch of a profile; none where only the chord is below a profile that bends back without bound.
+pub(in super::super) type LeastBend = Option<f64>;
+
+impl Cells {
+    pub(in super::super) fn new(outline: &Outline) -> Self {
+        let mut cells = Self::default();
+        cells.ends.push(outline.cuts[0]);
+        let mut knots: Vec<f64> =
+            outline.parts.iter().flat_map(|part| part.knots()).map(|roll| outline.position(*roll)).collect();
+        knots.sort_by(f64::total_cmp);
+        let closest = 1e-9 * (outline.facing.end - outline.facing.start);
+        for (piece, ends) in outline.cuts.windows(2).enumerate() {
+            let mut from = ends[0];
+            let inside = knots.iter().copied().filter(|knot| *knot > ends[0] && ends[1] - knot > closest);
+            for to in inside.chain([ends[1]]) {
+                if to - from > closest || to == ends[1] {
+                    cells.push(outline, piece, [from, to]);
+                    from = to;
+                }
+            }
+        }
+        cells.find_corners(outline);
+        cells.find_bounds();
+        cells
+    }
+
+    /// Adds a cell, or several of a curve that is no cubic.
+    fn push(&mut self, outline: &Outline, piece: usize, ends: [f64; 2]) {
+        if let Some(cubic) = outline.cubic(piece, ends) {
+            let length = ends[1] - ends[0];
+            let [c0, c1, c2, c3] = cubic;
+            // The points that span a cubic (Bernstein's form).
+            let (one, other) = (c0 + length * c1 / 3.0, c0 + length * (2.0 * c1 + length * c2) / 3.0);
+            let last = c0 + length * (c1 + length * (c2 + length * c3));
+            let bends = [2.0 * c2, 2.0 * c2 + 6.0 * c3 * length];
+            let least = c0.min(one).min(other).min(last);
+            self.cells.push(Cell { shape: Shape::Cubic(cubic), piece, least, bends });
+            self.ends.push(ends[1]);
+            return;
+        }
+        let places: [f64; SAMPLES + 1] = std::array::from_fn(|at| share(&ends, at, SAMPLES));
+        let rates = places.map(|place| outline.rates(place, piece));
+        let sign = |at: usize| [rates[at][2], rates[at + 1][2]].map(|bend| bend >= 0.0);
+        let mut first = 0;
+        for at in 1..=SAMPLES {
+            if at < SAMPLES && sign(at) == sign(at - 1) && sign(at)[0] == sign(at)[1] {
+                continue;
+            }
+            let bends = [rates[first][2], rates[at][2]];
+            let inside = || rates[first..=at].iter().map(|rates| rates[2]);
+            // What lies between two samples may bend by twice as much.
+            let least_bend = 2.0 * inside().fold(0.0, f64::min);
+            let [from, to] = [first, at].map(|end| outline.depth_on(places[end], piece));
+            let length = places[at] - places[first];
+            let (shape, least) = if inside().all(|bend| bend >= 0.0) {
+                let tangents = (from + length * rates[first][1].min(0.0)).max(to - length * rates[at][1].max(0.0));
+                (Shape::Convex, tangents.min(from.min(to)))
+            } else if inside().all(|bend| bend <= 0.0) {
+                (Shape::Concave, from.min(to))
+            } else {
+                (Shape::Mixed(least_bend), from.min(to) + 0.125 * least_bend * length * length)
+            };
+            self.cells.push(Cell { shape, piece, least, bends });
+            self.ends.push(places[at]);
+            first = at;
+        }
+    }
+
+    fn find_corners(&mut self, outline: &Outline) {
+        let slopes: Vec<[f64; 2]> =
+            (0..self.count()).map(|at| [at, at + 1].map(|end| self.rates(outline, self.ends[end], at)[1])).collect();
+        let finite = slopes.iter().flatten().filter(|slope| slope.is_finite());
+        let negligible = SLOPE_TOLERANCE * finite.fold(0.0_f64, |most, slope| most.max(slope.abs()));
+        let is_cubic = |at: usize| matches!(self.cells[at].shape, Shape::Cubic(_));
+        self.corners = (0..=self.count())
+            .map(|at| {
+                let is_inside = at > 0 && at < self.count();
+                !(is_inside
+                    && is_cubic(at - 1)
+                    && is_cubic(at)
+                    && (slopes[at][0] - slopes[at - 1][1]).abs() <= negligible)
+            })
+            .collect();
+    }
+
+    fn find_bounds(&mut self) {
+        let of_block = |cells: &[Cell]| {
+            cells.iter().fold([f64::INFINITY; 2], |[least, bend], cell| {
+                [least.min(cell.least), bend.min(cell.bends[0]).min(cell.bends[1])]
+            })
+        };
+        self.blocks = self.cells.chunks(BLOCK).map(of_block).collect();
+        self.from = self.cells.iter().map(|cell| cell.least).collect();
+        for at in (1..self.from.len()).rev() {
+            self.from[at - 1] = self.from[at - 1].min(self.from[at]);
+        }
+    }
+
+    pub(in super::super) fn count(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// Where a cell begins; of their number, where the last one ends.
+    pub(in super::super) fn end(&self, at: usize) -> f64 {
+        self.ends[at]
+    }
+
+    /// The piece of the outline on which a cell lies.
+    pub(in super::super) fn piece(&self, cell: usize) -> usize {
+        self.cells[cell].piece
+    }
+
+    /// The first corner behind a cell: the number of the cell that begins there.
+    pub(in super::super) fn next_corner(&self, cell: usize) -> usize {
+        (cell + 1..self.count()).find(|at| self.corners[*at]).unwrap_or(self.count())
+    }
+
+    /// The cell of a position, among these; where one begins that is the one behind.
+    #[inline]
+    pub(in super::super) fn cell(&self, position: f64, [first, last]: [usize; 2]) -> usize {
+        first + self.ends[first + 1..=last].partition_point(|end| *end <= position)
+    }
+
+    /// Depth, and its first and second derivative, on a cell.
+    #[inline]
+    pub(in super::super) fn rates(&self, outline: &Outline, position: f64, cell: usize) -> [f64; 3] {
+        let Cell { shape, piece, .. } = &self.cells[cell];
+        if let Shape::Cubic([c0, c1, c2, c3]) = shape {
+            let t = position - self.ends[cell];
+            return [c0 + t * (c1 + t * (c2 + t * c3)), c1 + t * (2.0 * c2 + 3.0 * t * c3), 2.0 * c2 + 6.0 * t * c3];
+        }
+        outline.rates(position, *piece)
+    }
+
+    /// A lower bound of the depth on these cells and between them.
+    #[inline]
+    pub(in super::super) fn least(&self, [first, last]: [usize; 2]) -> f64 {
+        self.over(first, last + 1, |cell| cell.least, 0)
+    }
+
+    /// A lower bound of the depth from a cell on.
+    pub(in super::super) fn least_from(&self, cell: usize) -> f64 {
+        self.from[cell]
+    }
+
+    /// A lower bound of the second derivative between places on these cells where it is so much, without a corner in between.
+    #[inline]
+    pub(in super::super) fn least_bend(&self, [first, last]: [usize; 2], bends: [f64; 2]) -> LeastBend {
+        let at_ends = bends[0].min(bends[1]);
+        match self.cells[first].shape {
+            // Straight in between.
+            Shape::Cubic(_) if first == last => Some(at_ends),
+            Shape::Cubic(_) => {
+                let [one, other] = [self.cells[first].bends[1], self.cells[last].bends[0]];
+                let inside = self.over(first + 1, last, |cell| cell.bends[0].min(cell.bends[1]), 1);
+                Some(at_ends.min(one).min(other).min(inside))
+            }
+            Shape::Convex => Some(0.0),
+            Shape::Concave => at_ends.is_finite().then_some(at_ends),
+            Shape::Mixed(least) => Some(least),
+        }
+    }
+
+    /// The least of some cells from one to before another, by blocks where there are many.
+    #[inline]
+    fn over(&self, from: usize, to: usize, of: impl Fn(&Cell) -> f64, which: usize) -> f64 {
+        let least = |from: usize, to: usize| self.cells[from..to].iter().map(&of).fold(f64::INFINITY, f64::min);
+        let (begin, end) = (from.div_ceil(BLOCK), to / BLOCK);
+        if begin >= end {
+            return if from < to { least(from, to) } else { f64::INFINITY };
+        }
+        let blocks = self.blocks[begin..end].iter().map(|block| block[which]).fold(f64::INFINITY, f64::min);
+        blocks.min(least(from, begin * BLOCK)).min(least(end * BLOCK, to))
+    }
+}
+
+/// The cubic through four places of a profile between two positions, over the distance from the first; none where the profile is another function.
+pub(super) fn fitted(outline: &Outline, piece: usize, ends: [f64; 2]) -> Option<[f64; 4]> {
+    let length = ends[1] - ends[0];
+    let depth = |share: f64| outline.depth_on(ends[0] + share * length, piece);
+    // By Newton's divided differences.
+    let mut differences = FITTED.map(depth);
+    let largest = differences.iter().fold(0.0_f64, |most, depth| most.max(depth.abs()));
+    for order in 1..FITTED.len() {
+        for at in (order..FITTED.len()).rev() {
+            differences[at] = (differences[at] - differences[at - 1]) / (FITTED[at] - FITTED[at - order]);
+        }
+    }
+    let mut cubic = [0.0; 4];
+    for at in (0..FITTED.len()).rev() {
+        // Times (share − the node), plus the next difference.
+        for power in (1..4).rev() {
+            cubic[power] = cubic[power - 1] - FITTED[at] * cubic[power];
+        }
+        cubic[0] = differences[at] - FITTED[at] * cubic[0];
+    }
+    let [c0, c1, c2, c3] = cubic;
+    let is_cubic = CHECKED.iter().all(|share| {
+        let off = c0 + share * (c1 + share * (c2 + share * c3)) - depth(*share);
+        off.abs() <= CUBIC_TOLERANCE * largest
+    });
+    is_cubic.then_some([c0, c1 / length, c2 / (length * length), c3 / (length * length * length)])
+}
