@@ -2,6 +2,8 @@
 //!
 //! Must not know: the constructors of gears and compliances, so that a mistake there cannot hide one here.
 
+pub(crate) mod uneven;
+
 use super::compliance::inclined::Inclined;
 use super::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use super::contact::flattening::Bodies;

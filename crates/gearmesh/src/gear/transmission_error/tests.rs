@@ -6,6 +6,7 @@ mod asked;
 mod broken_tips;
 mod corner;
 mod doubt;
+mod exchange;
 mod extremes;
 mod friction;
 mod plain;

@@ -8,12 +8,12 @@
 //!
 //! Assumes that dS²/de², df/de and d²f/de² are between their values at both ends of a stretch; `the_separation_is_monotone` tests it.
 
-use super::outline::Cells;
+use super::outline::{Below, Cells};
 use super::{PieceLocation, Spot, Way};
 use crate::gear::contact::separation::Touch;
 
-/// By how much lower a place must be to be looked for \[m\].
-const TOLERANCE: f64 = 1e-16;
+/// By how much lower a place must be to be looked for, over the length of the path.
+const TOLERANCE: f64 = 1e-14;
 /// Where a stretch is not halved any more, over the length of the path.
 const CLOSEST: f64 = 1e-10;
 /// The most steps of Newton's method and of halving.
@@ -51,6 +51,7 @@ pub(super) struct Search<'a, 'b> {
     way: &'b Way<'a>,
     cells: [&'b Cells; 2],
     nominal: f64,
+    tolerance: f64,
     closest: f64,
     minimum: (f64, Spot),
 }
@@ -64,8 +65,9 @@ impl<'a, 'b> Search<'a, 'b> {
         touch: Touch,
         minimum: (f64, Spot),
     ) -> (f64, Spot) {
-        let closest = CLOSEST * (way.facing.end - way.facing.start);
-        let mut search = Self { way, cells: [way.point.cells(), way.flank.cells()], nominal, closest, minimum };
+        let cells = [way.point.cells(), way.flank.cells()];
+        let [tolerance, closest] = [TOLERANCE, CLOSEST].map(|share| share * (way.facing.end - way.facing.start));
+        let mut search = Self { way, cells, nominal, tolerance, closest, minimum };
         search.run(before, touch);
         search.minimum
     }
@@ -104,7 +106,7 @@ impl<'a, 'b> Search<'a, 'b> {
         let (mut at, mut touch) = (before, touch);
         loop {
             // The separation only grows.
-            if touch.separation + point.least_from(cells[0]) + flank.least_from(cells[1]) >= self.minimum.0 - TOLERANCE
+            if touch.separation + point.least_from(cells[0]) + flank.least_from(cells[1]) >= self.minimum.0 - self.tolerance
             {
                 return;
             }
@@ -115,11 +117,14 @@ impl<'a, 'b> Search<'a, 'b> {
                 if ended[of] { corners[of] - 1 } else { self.cells[of].cell(position, [cells[of], corners[of] - 1]) }
             });
             let [from, to] = [self.place(at, touch, cells), self.place(end, at_end, last)];
-            let place = if ended[1] { PieceLocation::EndOfFlank } else { PieceLocation::EndOfPoint };
-            self.offer(to.gap(), last, place);
-            self.branch(&from, &to);
             cells = [0, 1].map(|of| if ended[of] { corners[of] } else { last[of] });
-            if cells[0] >= point.count() || cells[1] >= flank.count() {
+            let goes_on = cells[0] < point.count() && cells[1] < flank.count();
+            // A profile is as deep on both sides of a corner but for rounding, which a steep one makes much of.
+            let behind = if goes_on { self.place(end, at_end, cells).gap() } else { f64::INFINITY };
+            let place = if ended[1] { PieceLocation::EndOfFlank } else { PieceLocation::EndOfPoint };
+            self.offer(to.gap().min(behind), last, place);
+            self.branch(&from, &to);
+            if !goes_on {
                 return;
             }
             (at, touch) = (end, at_end);
@@ -153,19 +158,14 @@ impl<'a, 'b> Search<'a, 'b> {
         let width = to.at - from.at;
         let cells = [0, 1].map(|of| [from.cells[of], to.cells[of]]);
         let least = self.cells[0].least(cells[0]) + self.cells[1].least(cells[1]);
-        if from.touch.separation + least >= self.minimum.0 - TOLERANCE || width <= self.closest {
+        if from.touch.separation + least >= self.minimum.0 - self.tolerance || width <= self.closest {
             return;
         }
-        let Bound { least_bend, slopes, is_exact } = self.bound(from, to, cells);
-        // Of the convex function below the gap.
-        let [falls, rises] = [slopes[0] + 0.5 * width * least_bend.min(0.0), slopes[1] - 0.5 * width * least_bend.min(0.0)];
-        if falls >= 0.0 || rises <= 0.0 {
+        let below = self.bound(from, to, cells);
+        if below.least([from.gap(), to.gap()], width) >= self.minimum.0 - self.tolerance {
             return;
         }
-        if lowest_of_tangents([from.gap(), falls], [to.gap(), rises], width) >= self.minimum.0 - TOLERANCE {
-            return;
-        }
-        if least_bend >= 0.0 && is_exact {
+        if below.bend >= 0.0 && below.is_exact {
             self.descend(*from, *to);
             return;
         }
@@ -175,35 +175,29 @@ impl<'a, 'b> Search<'a, 'b> {
         self.branch(&middle, to);
     }
 
-    /// A lower bound of the second derivative of the gap, or of a function below it, and the slopes of that at both ends.
-    fn bound(&self, from: &Place, to: &Place, cells: [[usize; 2]; 2]) -> Bound {
+    /// What the gap is no less than between two places.
+    fn bound(&self, from: &Place, to: &Place, cells: [[usize; 2]; 2]) -> Below {
+        let along = [from.touch.curvature, to.touch.curvature];
+        let own = [from, to].map(|place| self.nominal + place.at);
+        let point = self.cells[0].below(&self.way.point, cells[0], own, [&from.point, &to.point]);
+        let flank = self.cells[1].below(&self.way.flank, cells[1], along, [&from.flank, &to.flank]);
         let rate = [from.touch.rate, to.touch.rate];
-        let [slow, fast] = [rate[0].min(rate[1]), rate[0].max(rate[1])];
-        let of_point = self.cells[0].least_bend(cells[0], [from.point[2], to.point[2]]);
-        let of_flank = self.cells[1].least_bend(cells[1], [from.flank[2], to.flank[2]]);
-        let rise = [to.point[0] - from.point[0], to.flank[0] - from.flank[0]];
-        let along = to.touch.curvature - from.touch.curvature;
-        let point_slopes = of_point.map_or([rise[0] / (to.at - from.at); 2], |_| [from.point[1], to.point[1]]);
-        let flank_slopes = of_flank.map_or([rise[1] / along; 2], |_| [from.flank[1], to.flank[1]]);
-        let flank_bend = of_flank.unwrap_or(0.0);
+        let stretched = if flank.bend < 0.0 { rate[0].max(rate[1]) } else { rate[0].min(rate[1]) };
         // Between which slopes the flank's profile stays.
-        let beyond = (-flank_bend).max(0.0) * along;
-        let between =
-            [flank_slopes[0].min(flank_slopes[1]) - beyond, flank_slopes[0].max(flank_slopes[1]) + beyond];
-        let products = between.map(|slope| {
-            (slope * from.touch.rate_slope).min(slope * to.touch.rate_slope)
-        });
-        let stretched = if flank_bend < 0.0 { fast * fast } else { slow * slow };
-        Bound {
-            least_bend: from.touch.bend.min(to.touch.bend)
-                + of_point.unwrap_or(0.0)
-                + flank_bend * stretched
-                + products[0].min(products[1]),
+        let beyond = (-flank.bend).max(0.0) * (along[1] - along[0]);
+        let [one, other] = flank.slopes;
+        let turned = [one.min(other) - beyond, one.max(other) + beyond]
+            .map(|slope| (slope * from.touch.rate_slope).min(slope * to.touch.rate_slope));
+        Below {
+            bend: from.touch.bend.min(to.touch.bend)
+                + point.bend
+                + flank.bend * stretched * stretched
+                + turned[0].min(turned[1]),
             slopes: [
-                from.touch.slope + point_slopes[0] + flank_slopes[0] * from.touch.rate,
-                to.touch.slope + point_slopes[1] + flank_slopes[1] * to.touch.rate,
+                from.touch.slope + point.slopes[0] + one * rate[0],
+                to.touch.slope + point.slopes[1] + other * rate[1],
             ],
-            is_exact: of_point.is_some() && of_flank.is_some(),
+            is_exact: point.is_exact && flank.is_exact,
         }
     }
 
@@ -224,30 +218,19 @@ impl<'a, 'b> Search<'a, 'b> {
             }
             nearer = self.inside(next, cells);
             let (gap, slope, bend) = (nearer.gap(), nearer.slope(), nearer.bend());
-            // Of so short a step a parabola tells all.
-            let left = if bend > 0.0 && bend.is_finite() { 0.5 * slope * slope / bend } else { f64::INFINITY };
-            if left <= TOLERANCE {
-                self.offer(gap - left, nearer.cells, PieceLocation::Inside);
+            // On the side to which it falls it bends no less than this, and falls no more than a parabola that bends so.
+            let [from, to] = if slope < 0.0 { [&nearer, &high] } else { [&low, &nearer] };
+            let least_bend = self.bound(from, to, [0, 1].map(|of| [from.cells[of], to.cells[of]])).bend;
+            if least_bend > 0.0 && 0.5 * slope * slope <= self.tolerance * least_bend {
+                self.offer(gap - 0.5 * slope * slope / bend, nearer.cells, PieceLocation::Inside);
                 return;
             }
             self.offer(gap, nearer.cells, PieceLocation::Inside);
             *(if slope < 0.0 { &mut low } else { &mut high }) = nearer;
-            let ends = [[low.gap(), low.slope()], [high.gap(), high.slope()]];
-            if lowest_of_tangents(ends[0], ends[1], high.at - low.at) >= self.minimum.0 - TOLERANCE {
+            let below = Below { bend: 0.0, slopes: [low.slope(), high.slope()], is_exact: true };
+            if below.least([low.gap(), high.gap()], high.at - low.at) >= self.minimum.0 - self.tolerance {
                 return;
             }
         }
     }
-}
-
-struct Bound {
-    least_bend: f64,
-    slopes: [f64; 2],
-    /// Whether it is that of the gap itself.
-    is_exact: bool,
-}
-
-/// Where the tangents at both ends of a stretch meet, of a function that falls from both: it is nowhere lower if it is convex.
-fn lowest_of_tangents([from, falls]: [f64; 2], [to, rises]: [f64; 2], width: f64) -> f64 {
-    from + falls * ((to - from - rises * width) / (falls - rises))
 }

@@ -1,7 +1,7 @@
 //! The least gap against brute force, in the model's own terms and with true points, and its continuity.
 
 mod arcs;
-mod kinks;
+mod crests;
 mod outlines;
 mod rough;
 

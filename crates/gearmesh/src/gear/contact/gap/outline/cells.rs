@@ -1,11 +1,11 @@
-//! A profile in cells, each a cubic or a curve that bends one way, with bounds for a search by branch and bound.
+//! A profile in cells, each a cubic or another curve, with lower bounds for a search by branch and bound.
 //!
 //! Must not know: the other flank, how places are searched.
 
 use super::{Outline, share};
 
-/// Samples that say where a curve that is no cubic changes the sign of its second derivative.
-const SAMPLES: usize = 64;
+/// Cells of a piece that is no cubic.
+const CURVED_CELLS: usize = 8;
 /// Shares of a cell at which a cubic is fitted, and at which it must agree with the profile.
 const FITTED: [f64; 4] = [0.1, 0.35, 0.65, 0.9];
 const CHECKED: [f64; 3] = [0.02, 0.5, 0.98];
@@ -32,27 +32,41 @@ pub(in super::super) struct Cells {
 
 #[derive(Clone, Copy, Debug)]
 struct Cell {
-    shape: Shape,
+    /// Coefficients over the distance from its beginning; none of another curve.
+    cubic: Option<[f64; 4]>,
     /// The piece of the outline on which it lies.
     piece: usize,
     /// A lower bound of the depth.
     least: f64,
-    /// The second derivative at both ends.
+    /// The second derivative of a cubic at both ends.
     bends: [f64; 2],
 }
 
+/// A lower bound of the second derivative of a profile on a stretch, or of a function below it that is as high at both ends; and its slopes there.
 #[derive(Clone, Copy, Debug)]
-enum Shape {
-    /// Coefficients over the distance from its beginning.
-    Cubic([f64; 4]),
-    Convex,
-    Concave,
-    /// A curve whose second derivative changes its sign, and the least one that it may have.
-    Mixed(f64),
+pub(in super::super) struct Below {
+    pub(in super::super) bend: f64,
+    pub(in super::super) slopes: [f64; 2],
+    /// Whether it is the profile itself.
+    pub(in super::super) is_exact: bool,
 }
 
-/// A lower bound of a second derivative on a stretch of a profile; none where only the chord is below a profile that bends back without bound.
-pub(in super::super) type LeastBend = Option<f64>;
+impl Below {
+    /// A lower bound of the values between two ends so far apart, where these are the values.
+    pub(in super::super) fn least(&self, values: [f64; 2], width: f64) -> f64 {
+        // Less by the product of the distances from both ends, the function is convex.
+        let more = 0.5 * width * self.bend.min(0.0);
+        let [falls, rises] = [self.slopes[0] + more, self.slopes[1] - more];
+        if falls >= 0.0 {
+            return values[0];
+        }
+        if rises <= 0.0 {
+            return values[1];
+        }
+        // Where the tangents at both ends meet.
+        values[0] + falls * ((values[1] - values[0] - rises * width) / (falls - rises))
+    }
+}
 
 impl Cells {
     pub(in super::super) fn new(outline: &Outline) -> Self {
@@ -87,35 +101,16 @@ impl Cells {
             let last = c0 + length * (c1 + length * (c2 + length * c3));
             let bends = [2.0 * c2, 2.0 * c2 + 6.0 * c3 * length];
             let least = c0.min(one).min(other).min(last);
-            self.cells.push(Cell { shape: Shape::Cubic(cubic), piece, least, bends });
+            self.cells.push(Cell { cubic: Some(cubic), piece, least, bends });
             self.ends.push(ends[1]);
             return;
         }
-        let places: [f64; SAMPLES + 1] = std::array::from_fn(|at| share(&ends, at, SAMPLES));
-        let rates = places.map(|place| outline.rates(place, piece));
-        let sign = |at: usize| [rates[at][2], rates[at + 1][2]].map(|bend| bend >= 0.0);
-        let mut first = 0;
-        for at in 1..=SAMPLES {
-            if at < SAMPLES && sign(at) == sign(at - 1) && sign(at)[0] == sign(at)[1] {
-                continue;
-            }
-            let bends = [rates[first][2], rates[at][2]];
-            let inside = || rates[first..=at].iter().map(|rates| rates[2]);
-            // What lies between two samples may bend by twice as much.
-            let least_bend = 2.0 * inside().fold(0.0, f64::min);
-            let [from, to] = [first, at].map(|end| outline.depth_on(places[end], piece));
-            let length = places[at] - places[first];
-            let (shape, least) = if inside().all(|bend| bend >= 0.0) {
-                let tangents = (from + length * rates[first][1].min(0.0)).max(to - length * rates[at][1].max(0.0));
-                (Shape::Convex, tangents.min(from.min(to)))
-            } else if inside().all(|bend| bend <= 0.0) {
-                (Shape::Concave, from.min(to))
-            } else {
-                (Shape::Mixed(least_bend), from.min(to) + 0.125 * least_bend * length * length)
-            };
-            self.cells.push(Cell { shape, piece, least, bends });
-            self.ends.push(places[at]);
-            first = at;
+        for at in 0..CURVED_CELLS {
+            let ends = [at, at + 1].map(|end| share(&ends, end, CURVED_CELLS));
+            let values = ends.map(|end| outline.depth_on(end, piece));
+            let least = outline.below(piece, ends).least(values, ends[1] - ends[0]);
+            self.cells.push(Cell { cubic: None, piece, least, bends: [0.0; 2] });
+            self.ends.push(ends[1]);
         }
     }
 
@@ -124,7 +119,7 @@ impl Cells {
             (0..self.count()).map(|at| [at, at + 1].map(|end| self.rates(outline, self.ends[end], at)[1])).collect();
         let finite = slopes.iter().flatten().filter(|slope| slope.is_finite());
         let negligible = SLOPE_TOLERANCE * finite.fold(0.0_f64, |most, slope| most.max(slope.abs()));
-        let is_cubic = |at: usize| matches!(self.cells[at].shape, Shape::Cubic(_));
+        let is_cubic = |at: usize| self.cells[at].cubic.is_some();
         self.corners = (0..=self.count())
             .map(|at| {
                 let is_inside = at > 0 && at < self.count();
@@ -177,8 +172,8 @@ impl Cells {
     /// Depth, and its first and second derivative, on a cell.
     #[inline]
     pub(in super::super) fn rates(&self, outline: &Outline, position: f64, cell: usize) -> [f64; 3] {
-        let Cell { shape, piece, .. } = &self.cells[cell];
-        if let Shape::Cubic([c0, c1, c2, c3]) = shape {
+        let Cell { cubic, piece, .. } = &self.cells[cell];
+        if let Some([c0, c1, c2, c3]) = cubic {
             let t = position - self.ends[cell];
             return [c0 + t * (c1 + t * (c2 + t * c3)), c1 + t * (2.0 * c2 + 3.0 * t * c3), 2.0 * c2 + 6.0 * t * c3];
         }
@@ -196,22 +191,25 @@ impl Cells {
         self.from[cell]
     }
 
-    /// A lower bound of the second derivative between places on these cells where it is so much, without a corner in between.
+    /// What the profile is no less than between two places on these cells with such rates, without a corner in between.
     #[inline]
-    pub(in super::super) fn least_bend(&self, [first, last]: [usize; 2], bends: [f64; 2]) -> LeastBend {
-        let at_ends = bends[0].min(bends[1]);
-        match self.cells[first].shape {
-            // Straight in between.
-            Shape::Cubic(_) if first == last => Some(at_ends),
-            Shape::Cubic(_) => {
-                let [one, other] = [self.cells[first].bends[1], self.cells[last].bends[0]];
-                let inside = self.over(first + 1, last, |cell| cell.bends[0].min(cell.bends[1]), 1);
-                Some(at_ends.min(one).min(other).min(inside))
-            }
-            Shape::Convex => Some(0.0),
-            Shape::Concave => at_ends.is_finite().then_some(at_ends),
-            Shape::Mixed(least) => Some(least),
+    pub(in super::super) fn below(
+        &self,
+        outline: &Outline,
+        [first, last]: [usize; 2],
+        ends: [f64; 2],
+        rates: [&[f64; 3]; 2],
+    ) -> Below {
+        if self.cells[first].cubic.is_none() {
+            return outline.below(self.cells[first].piece, ends);
         }
+        // Straight within a cell.
+        let mut bend = rates[0][2].min(rates[1][2]);
+        if first < last {
+            let inside = self.over(first + 1, last, |cell| cell.bends[0].min(cell.bends[1]), 1);
+            bend = bend.min(self.cells[first].bends[1]).min(self.cells[last].bends[0]).min(inside);
+        }
+        Below { bend, slopes: [rates[0][1], rates[1][1]], is_exact: true }
     }
 
     /// The least of some cells from one to before another, by blocks where there are many.
