@@ -71,9 +71,7 @@ impl Growth {
     #[must_use]
     pub(crate) fn rates(self, t: f64) -> [f64; 3] {
         match self {
-            Self::Quadratic { linear } => {
-                [self.value(t), linear + 2.0 * (1.0 - linear) * t, 2.0 * (1.0 - linear)]
-            }
+            Self::Quadratic { linear } => [self.value(t), linear + 2.0 * (1.0 - linear) * t, 2.0 * (1.0 - linear)],
             Self::Power { exponent } => [
                 self.value(t),
                 exponent * libm::pow(t, exponent - 1.0),

@@ -6,7 +6,7 @@
 //! half of the bound (αBB: Adjiman et al., Computers & Chemical Engineering 22, 1998). What cannot be lower than the least gap so far is left out,
 //! the rest is halved. Must not know: load.
 //!
-//! Assumes that dS²/de², df/de and d²f/de² are between their values at both ends of a stretch; `the_separation_is_monotone` tests it.
+//! Assumes that d²S/de² and df/de are between their values at both ends of a stretch, and d²f/de² nearly so; `the_separation_stays_within_its_bounds` tests it.
 
 use super::outline::{Below, Cells};
 use super::{PieceLocation, Spot, Way};
@@ -16,6 +16,8 @@ use crate::gear::contact::separation::Touch;
 const TOLERANCE: f64 = 1e-14;
 /// Where a stretch is not halved any more, over the length of the path.
 const CLOSEST: f64 = 1e-10;
+/// By how much of itself d²f/de² may be beyond its values at both ends of a stretch, over the square of the share by which f grows there.
+pub(super) const MORE: f64 = 0.5;
 /// The most steps of Newton's method and of halving.
 const MOST_STEPS: usize = 64;
 
@@ -106,7 +108,8 @@ impl<'a, 'b> Search<'a, 'b> {
         let (mut at, mut touch) = (before, touch);
         loop {
             // The separation only grows.
-            if touch.separation + point.least_from(cells[0]) + flank.least_from(cells[1]) >= self.minimum.0 - self.tolerance
+            if touch.separation + point.least_from(cells[0]) + flank.least_from(cells[1])
+                >= self.minimum.0 - self.tolerance
             {
                 return;
             }
@@ -181,13 +184,17 @@ impl<'a, 'b> Search<'a, 'b> {
         let own = [from, to].map(|place| self.nominal + place.at);
         let point = self.cells[0].below(&self.way.point, cells[0], own, [&from.point, &to.point]);
         let flank = self.cells[1].below(&self.way.flank, cells[1], along, [&from.flank, &to.flank]);
-        let rate = [from.touch.rate, to.touch.rate];
+        let [rate, rate_slope] = [[from.touch.rate, to.touch.rate], [from.touch.rate_slope, to.touch.rate_slope]];
         let stretched = if flank.bend < 0.0 { rate[0].max(rate[1]) } else { rate[0].min(rate[1]) };
         // Between which slopes the flank's profile stays.
         let beyond = (-flank.bend).max(0.0) * (along[1] - along[0]);
         let [one, other] = flank.slopes;
+        // The rate may bend more in between than at both ends, by second order in how far they are from each other.
+        let share = (along[1] - along[0]) / along[0].max(f64::MIN_POSITIVE);
+        let more = MORE * share * share * rate_slope[0].abs().min(rate_slope[1].abs());
+        let rate_slopes = [rate_slope[0].min(rate_slope[1]) - more, rate_slope[0].max(rate_slope[1]) + more];
         let turned = [one.min(other) - beyond, one.max(other) + beyond]
-            .map(|slope| (slope * from.touch.rate_slope).min(slope * to.touch.rate_slope));
+            .map(|slope| (slope * rate_slopes[0]).min(slope * rate_slopes[1]));
         Below {
             bend: from.touch.bend.min(to.touch.bend)
                 + point.bend
@@ -208,11 +215,7 @@ impl<'a, 'b> Search<'a, 'b> {
         for step in 0..MOST_STEPS {
             let newton = -nearer.slope() / nearer.bend();
             let next = nearer.at + newton;
-            let next = if next > low.at && next < high.at && step % 4 != 3 {
-                next
-            } else {
-                0.5 * (low.at + high.at)
-            };
+            let next = if next > low.at && next < high.at && step % 4 != 3 { next } else { 0.5 * (low.at + high.at) };
             if !(next > low.at && next < high.at) {
                 return;
             }

@@ -258,21 +258,22 @@ impl<'a> Outline<'a> {
         let (chord, [_, rate]) = (1.0 / (ends[1] - ends[0]), self.rolls);
         let rolls = ends.map(|end| self.roll(end));
         let inside = self.roll(0.5 * (self.cuts[piece] + self.cuts[piece + 1]));
-        let of_parts = self.parts.iter().try_fold(Below { bend: 0.0, slopes: [0.0; 2], is_exact: true }, |sum, part| {
-            let rates = [part.rates(rolls[0], inside)?, part.rates(rolls[1], inside)?];
-            let bend = rates[0][2].min(rates[1][2]) * rate * rate;
-            let is_exact = bend.is_finite();
-            let slopes = if is_exact {
-                rates.map(|rates| rates[1] * rate)
-            } else {
-                [(rates[1][0] - rates[0][0]) * chord; 2]
-            };
-            Some(Below {
-                bend: sum.bend + if is_exact { bend } else { 0.0 },
-                slopes: [sum.slopes[0] + slopes[0], sum.slopes[1] + slopes[1]],
-                is_exact: sum.is_exact && is_exact,
-            })
-        });
+        let of_parts =
+            self.parts.iter().try_fold(Below { bend: 0.0, slopes: [0.0; 2], is_exact: true }, |sum, part| {
+                let rates = [part.rates(rolls[0], inside)?, part.rates(rolls[1], inside)?];
+                let bend = rates[0][2].min(rates[1][2]) * rate * rate;
+                let is_exact = bend.is_finite();
+                let slopes = if is_exact {
+                    rates.map(|rates| rates[1] * rate)
+                } else {
+                    [(rates[1][0] - rates[0][0]) * chord; 2]
+                };
+                Some(Below {
+                    bend: sum.bend + if is_exact { bend } else { 0.0 },
+                    slopes: [sum.slopes[0] + slopes[0], sum.slopes[1] + slopes[1]],
+                    is_exact: sum.is_exact && is_exact,
+                })
+            });
         of_parts.unwrap_or_else(|| {
             let rates: [[f64; 3]; SAMPLES + 1] =
                 std::array::from_fn(|at| self.sampled_rates(share(&ends, at, SAMPLES), piece));

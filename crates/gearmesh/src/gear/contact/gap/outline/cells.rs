@@ -71,16 +71,23 @@ impl Below {
 impl Cells {
     pub(in super::super) fn new(outline: &Outline) -> Self {
         let mut cells = Self::default();
-        cells.ends.push(outline.cuts[0]);
+        // A tip may reach beyond the base circle of the other gear, where that flank has no points.
+        let base = outline.position(0.0);
+        let [first, last] = if outline.is_point { [f64::NEG_INFINITY, base] } else { [base, f64::INFINITY] };
+        cells.ends.push(outline.cuts[0].max(first));
         let mut knots: Vec<f64> =
             outline.parts.iter().flat_map(|part| part.knots()).map(|roll| outline.position(*roll)).collect();
         knots.sort_by(f64::total_cmp);
         let closest = 1e-9 * (outline.facing.end - outline.facing.start);
         for (piece, ends) in outline.cuts.windows(2).enumerate() {
+            let ends = [ends[0].max(first), ends[1].min(last)];
+            if ends[1] <= ends[0] {
+                continue;
+            }
             let mut from = ends[0];
             let inside = knots.iter().copied().filter(|knot| *knot > ends[0] && ends[1] - knot > closest);
             for to in inside.chain([ends[1]]) {
-                if to - from > closest || to == ends[1] {
+                if to - from > closest || to >= ends[1] {
                     cells.push(outline, piece, [from, to]);
                     from = to;
                 }
