@@ -1,7 +1,7 @@
 //! The least gap of flanks that bend back, by branch and bound.
 //!
 //! Both flanks are cut where one of them has a kink. Between two cuts the second derivative of S + C1 + C2 over the distance from the nominal
-//! point has a lower bound: S is convex, and those of the depths are known. Where the bound is not negative the gap is convex, and Newton's method
+//! point has a lower bound, since those of S and of both depths have one. Where the bound is not negative the gap is convex, and Newton's method
 //! leads to its least place. Else the gap is nowhere lower than the convex function that is less by the product of the distances from both ends times
 //! half of the bound (αBB: Adjiman et al., Computers & Chemical Engineering 22, 1998). What cannot be lower than the least gap so far is left out,
 //! the rest is halved. Must not know: load.
