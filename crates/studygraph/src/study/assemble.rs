@@ -56,10 +56,15 @@ pub const SET: &str = "set";
 /// The key of a study under which the texts of the files stand that its stages name.
 pub const FILES: &str = "files";
 
-/// A study of what is sound in a text, and everything that is wrong with the rest.
-pub fn examine(text: &str, path: &Path, program: &'static Program) -> (Option<Study>, Vec<Diagnostic>) {
+/// A study of what is sound in the tree of a text, and everything that is wrong with the rest.
+pub fn examine(
+    root: Option<Tree>,
+    text: &str,
+    path: &Path,
+    program: &'static Program,
+) -> (Option<Study>, Vec<Diagnostic>) {
     let mut wrong = Vec::new();
-    let sound = sound(text, path, program, &mut wrong).unwrap_or_else(|found| {
+    let sound = sound_tree(root, text, path, program, &mut wrong).unwrap_or_else(|found| {
         wrong.push(found);
         None
     });
@@ -84,15 +89,6 @@ pub fn part(
     let mut wrong = Vec::new();
     let study = sound_tree(Some(root), blocks.text(), path, program, &mut wrong).ok()??;
     wrong.is_empty().then_some(Study { unread, ..study })
-}
-
-fn sound(
-    text: &str,
-    path: &Path,
-    program: &'static Program,
-    wrong: &mut Vec<Diagnostic>,
-) -> Result<Option<Study>, Diagnostic> {
-    sound_tree(parse(text)?, text, path, program, wrong)
 }
 
 fn sound_tree(

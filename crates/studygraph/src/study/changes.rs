@@ -1,17 +1,19 @@
 //! A study with something set from outside: `--set PATH=VALUE`, `--name NAME`.
 //!
-//! What is set is written behind the text of the file, under the key `set`, so that the text that manifests and archives
-//! keep is the whole study: read by itself, it gives the same tables. A message about it has the option for its place.
+//! What is set is merged into the tree of the file, under the key `set`, with places behind its text; a message about it has
+//! the option for its place. The text that manifests and archives store is one document of the whole study (`stored.rs`):
+//! read by itself, it gives the same tables.
 //! Must not know: the command line beyond the names of its two options.
 
 use std::path::{Path, PathBuf};
 
 use super::assemble::{self, LONGEST_NAME, SET};
-use super::document::{Content, Node, parse};
+use super::document::{Content, Node, Shift, parse};
 use super::files::{self, Attached};
 use super::path::FieldPath;
+use super::place::place_at;
 use super::words::quote;
-use super::{LoadError, Study};
+use super::{LoadError, Study, stored};
 use crate::program::Program;
 use declare::digest::Writer;
 use declare::error::{Diagnostic, Faults, Place};
@@ -33,11 +35,13 @@ impl Settings {
     }
 }
 
-/// What was set behind a text, and the files that were read, and where they stand in it.
+/// What was set beside a text, and the files that were read.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Changes {
     set: Vec<Change>,
     files: Vec<Attached>,
+    /// The text in which places count: that of the file, and what was added behind it.
+    text: String,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -90,45 +94,61 @@ impl Refused {
 /// # Errors
 /// All that is wrong with it.
 pub fn examine(text: &str, path: &Path, program: &'static Program, settings: &Settings) -> Result<Study, Refused> {
-    let (text, changes) = whole(text, path, program, settings)?;
-    let (study, wrong) = assemble::examine(&text, path, program);
-    let study = study.map(|study| Study { changes: changes.clone(), ..study });
+    let Whole { root, added, stored, changes } = Whole::of(text, path, program, settings)?;
+    let (study, wrong) = assemble::examine(root, &added.text, path, program);
+    let changes = Changes { text: added.text, ..changes };
     match (Faults::all(wrong), study) {
-        (Ok(()), Some(study)) => Ok(study),
+        (Ok(()), Some(study)) => Ok(Study { text: stored, changes, ..study }),
         (Err(wrong), sound) => {
-            let error = LoadError::new(path, text, wrong);
-            Err(Refused { error, changes: Box::new(changes), sound: sound.map(Box::new) })
+            let error = LoadError::new(path, changes.text.clone(), wrong);
+            let sound = sound.map(|study| Box::new(Study { changes: changes.clone(), text: stored, ..study }));
+            Err(Refused { error, changes: Box::new(changes), sound })
         }
         // What is no study has something wrong with it.
-        (Ok(()), None) => Err(LoadError::new(path, text, Diagnostic::new("this is not a study")).into()),
+        (Ok(()), None) => Err(LoadError::new(path, changes.text, Diagnostic::new("this is not a study")).into()),
     }
 }
 
-/// The whole text of a study: with what is set, and the files that it names.
-fn whole(
-    text: &str,
-    path: &Path,
-    program: &'static Program,
-    settings: &Settings,
-) -> Result<(String, Changes), LoadError> {
-    let (text, mut changes) =
-        if settings.is_empty() { (text.to_owned(), Changes::default()) } else { changed(text, path, settings)? };
-    let Some(root) = tree(&text, program) else { return Ok((text, changes)) };
-    let (text, files) = files::attach(&text, &root, path).map_err(|error| changes.placed(error))?;
-    changes.files = files;
-    Ok((text, changes))
+/// A study with what is set, and the files that it names.
+struct Whole {
+    root: Option<Node>,
+    added: Added,
+    /// One YAML document of all of it.
+    stored: String,
+    changes: Changes,
 }
 
-/// The tree of a text that may name files, with what is set; none of one that is refused, by its own message.
-fn tree(text: &str, program: &'static Program) -> Option<Node> {
-    let root = if text.contains(FILE.name) { parse(text).ok()?? } else { return None };
-    assemble::with_what_is_set(root, program.kinds).ok()
+impl Whole {
+    fn of(text: &str, path: &Path, program: &'static Program, settings: &Settings) -> Result<Self, LoadError> {
+        let refused = |wrong: Diagnostic| LoadError::new(path, text.to_owned(), wrong);
+        let mut root = parse(text).map_err(refused)?;
+        let mut added = Added { text: text.to_owned(), file: text.len() };
+        let mut changes = Changes::default();
+        if let Some(root) = root.as_mut().filter(|root| root.is_mapping()) {
+            changed(root, &mut added, path, settings, &mut changes)?;
+            if added.text.contains(FILE.name)
+                && let Ok(set) = assemble::with_what_is_set(root.clone(), program.kinds)
+            {
+                changes.files =
+                    files::attach(root, &mut added, &set, path).map_err(|error| changes.placed(error))?;
+            }
+        }
+        let stored = match &root {
+            Some(root) if added.text.len() > text.len() => stored::stored(text, added.behind(), root),
+            _ => text.to_owned(),
+        };
+        Ok(Self { root, added, stored, changes })
+    }
 }
 
 /// As [`super::files`].
 pub(super) fn files(text: &str, path: &Path, program: &'static Program, settings: &Settings) -> Vec<PathBuf> {
-    let changed = changed(text, path, settings).map_or_else(|_| text.to_owned(), |(text, _)| text);
-    let named = tree(&changed, program).map_or_else(Vec::new, |root| files::named(&root));
+    let Ok(Some(root)) = parse(text) else { return Vec::new() };
+    let mut added = Added { text: text.to_owned(), file: text.len() };
+    let mut changed = root.clone();
+    let is_changed = self::changed(&mut changed, &mut added, path, settings, &mut Changes::default()).is_ok();
+    let root = if is_changed { changed } else { root };
+    let named = assemble::with_what_is_set(root, program.kinds).map_or_else(|_| Vec::new(), |root| files::named(&root));
     named.into_iter().map(|(name, _)| path.with_file_name(name)).collect()
 }
 
@@ -151,6 +171,11 @@ impl Changes {
         let offset = if change.option == NAME { 0 } else { offset.min(change.value.len()) };
         Change::refused(change.option, &change.value, offset, place.length, wrong)
     }
+
+    /// The text in which the places of a study count whose own text is `stored`.
+    pub(super) fn text<'t>(&'t self, stored: &'t str) -> &'t str {
+        if self.text.is_empty() { stored } else { &self.text }
+    }
 }
 
 const OPTION: &str = "--set";
@@ -164,16 +189,15 @@ impl Change {
     }
 }
 
-/// The text with what is set behind it.
-fn changed(text: &str, path: &Path, settings: &Settings) -> Result<(String, Changes), LoadError> {
-    let refused = |wrong: Diagnostic| LoadError::new(path, text.to_owned(), wrong);
-    let root = parse(text).map_err(refused)?;
-    let Some(root @ Node { content: Content::Mapping(_), .. }) = root else {
-        // Refused with its own message.
-        return Ok((text.to_owned(), Changes::default()));
-    };
-    let (mut whole, inside) = behind(text, &root, SET).map_err(refused)?;
-    let Content::Mapping(pairs) = &root.content else { return Ok((text.to_owned(), Changes::default())) };
+/// Sets what is to be set in the tree of a study, and adds it behind its text.
+fn changed(
+    root: &mut Node,
+    added: &mut Added,
+    path: &Path,
+    settings: &Settings,
+    changes: &mut Changes,
+) -> Result<(), LoadError> {
+    let Content::Mapping(pairs) = &root.content else { return Ok(()) };
     let mut entries = Vec::new();
     for set in &settings.set {
         entries.push((OPTION, set.clone(), entry(set)?));
@@ -183,55 +207,113 @@ fn changed(text: &str, path: &Path, settings: &Settings) -> Result<(String, Chan
     let is_set = entries.iter().any(|(_, _, (path, _))| path == "study");
     match (named, own) {
         (Some(named), _) => entries.insert(0, named),
-        (None, Some(Content::Scalar { text, .. })) if !is_set => {
+        (None, Some(Content::Scalar { text, .. })) if !is_set && !entries.is_empty() => {
             let name = name_of(text, &settings.set);
             entries.insert(0, (NAME, name.clone(), ("study".to_owned(), name)));
         }
         _ => {}
     }
-    let mut changes = Vec::new();
-    for (option, value, (key, written)) in entries {
-        whole += &inside;
-        let from = whole.len();
-        let key_length = key.len();
-        whole += &format!("{key}: {written}");
-        changes.push(Change { option, value, from, to: whole.len(), key: key_length });
-        whole.push('\n');
+    if entries.is_empty() {
+        return Ok(());
     }
-    Ok((whole, Changes { set: changes, files: Vec::new() }))
+    let own = pairs.iter().find(|pair| pair.key == SET).map(|pair| pair.node.clone());
+    let mut section = Section::new(added, SET);
+    for (at, (option, value, (key, written))) in entries.iter().enumerate() {
+        let first = entries[..at].iter().find(|(_, _, (earlier, _))| earlier == key);
+        let first = first.map(|(option, value, _)| format!("`{option} {value}`")).or_else(|| {
+            let Content::Mapping(own) = &own.as_ref()?.content else { return None };
+            let own = own.iter().find(|own| own.key == *key)?;
+            Some(format!("in line {} of {}", own.place.line, path.display()))
+        });
+        if let Some(first) = first {
+            let wrong = Diagnostic::new(format!("{} stands here a second time", quote(key)));
+            let wrong = wrong.help(format!("the first is {first}; keep one of them"));
+            return Err(Change::refused(option, value, 0, key.len(), wrong));
+        }
+        section.put("  ");
+        let from = section.end();
+        section.put(&format!("{key}: {written}"));
+        changes.set.push(Change { option, value: value.clone(), from, to: section.end(), key: key.len() });
+        section.put("\n");
+    }
+    section.merge(root).map_err(|wrong| changes.placed(LoadError::new(path, added.text.clone(), wrong)))
 }
 
-/// The text of a study up to where entries under one of its own keys can be written behind it, and by what their lines are set in.
-///
-/// # Errors
-/// When nothing can be written there.
-pub(super) fn behind(text: &str, root: &Node, key: &str) -> Result<(String, String), Diagnostic> {
-    let refused = |message: &str, help: &str, place: Place| Err(Diagnostic::new(message).at(place).help(help));
-    if text[root.place.offset..].starts_with('{') {
-        let help = "write `study: NAME` and `stages:` on lines of their own";
-        return refused("nothing can be set in a study between braces", help, root.place);
+/// What was added behind the text of a file, so that it has places there.
+pub(super) struct Added {
+    pub text: String,
+    /// Bytes of the file itself.
+    file: usize,
+}
+
+impl Added {
+    fn behind(&self) -> &str {
+        &self.text[self.file..]
     }
-    let Content::Mapping(pairs) = &root.content else { return Ok((text.to_owned(), String::new())) };
-    let indent = |column: usize| " ".repeat(column.saturating_sub(1));
-    let mut whole = text.trim_end_matches(['\n', '\r', ' ']).to_owned() + "\n";
-    let own = pairs.iter().position(|pair| pair.key == key);
-    match own.map(|own| (own + 1 == pairs.len(), &pairs[own])) {
-        None => {
-            let outer = indent(root.place.column);
-            whole += &format!("{outer}{key}:\n");
-            Ok((whole, outer + "  "))
+}
+
+/// Entries under one key of a study that are written behind its text, in a document of their own.
+pub(super) struct Section<'a> {
+    added: &'a mut Added,
+    key: &'static str,
+    /// Where it begins, and how many lines are before it.
+    start: usize,
+    lines: usize,
+}
+
+impl<'a> Section<'a> {
+    pub(super) fn new(added: &'a mut Added, key: &'static str) -> Self {
+        if !added.text.ends_with(['\n', '\r']) {
+            added.text.push('\n');
         }
-        Some((true, pair)) => match &pair.node.content {
-            Content::Mapping(pairs) if !pairs.is_empty() && !text[pair.node.place.offset..].starts_with('{') => {
-                Ok((whole, indent(pairs[0].place.column)))
+        let (start, lines) = (added.text.len(), place_at(&added.text, added.text.len(), 0).line - 1);
+        added.text += &format!("{key}:\n");
+        Self { added, key, start, lines }
+    }
+
+    pub(super) fn put(&mut self, text: &str) {
+        self.added.text += text;
+    }
+
+    /// Byte behind what was put.
+    pub(super) fn end(&self) -> usize {
+        self.added.text.len()
+    }
+
+    /// The line, counted from 1, in which the next byte stands.
+    pub(super) fn line(&self) -> usize {
+        self.lines + 1 + self.added.text[self.start..].matches('\n').count()
+    }
+
+    /// Puts the entries into the tree of the study.
+    ///
+    /// # Errors
+    /// When they are not YAML.
+    pub(super) fn merge(self, root: &mut Node) -> Result<(), Diagnostic> {
+        let shift = Shift { from: 0, bytes: self.start, lines: self.lines };
+        let mut read = parse(&self.added.text[self.start..]).map_err(|mut wrong| {
+            wrong.place = wrong.place.map(|place| shift.moved(place));
+            wrong
+        })?;
+        let Some(Content::Mapping(sections)) = read.as_mut().map(|read| {
+            read.shift(&[shift]);
+            &mut read.content
+        }) else {
+            return Ok(());
+        };
+        let Content::Mapping(pairs) = &mut root.content else { return Ok(()) };
+        match pairs.iter_mut().find(|pair| pair.key == self.key) {
+            None => pairs.append(sections),
+            // What is no mapping is refused with its own message.
+            Some(own) => {
+                if let (Content::Mapping(own), Some(Content::Mapping(more))) =
+                    (&mut own.node.content, sections.first_mut().map(|section| &mut section.node.content))
+                {
+                    own.append(more);
+                }
             }
-            _ => refused("nothing can be added to this", "write a path and its value on each line", pair.place),
-        },
-        Some((false, pair)) => {
-            let last = pairs.last().map_or("stages", |pair| pair.key.as_str());
-            let help = format!("put it behind `{last}`");
-            refused(&format!("`{key}` must be the last key, so that more can be set"), &help, pair.place)
         }
+        Ok(())
     }
 }
 

@@ -108,14 +108,20 @@ pub struct Shift {
     pub lines: usize,
 }
 
+impl Shift {
+    /// The place in the whole of one in the piece.
+    pub fn moved(self, place: Place) -> Place {
+        Place { offset: place.offset + self.bytes, line: place.line + self.lines, ..place }
+    }
+}
+
 impl Node {
     /// Moves what was read of a text to where its pieces lie in the whole.
     pub fn shift(&mut self, shifts: &[Shift]) {
         let moved = |place: &mut Place| {
             let piece = shifts.partition_point(|shift| shift.from <= place.offset);
-            if let Some(Shift { bytes, lines, .. }) = piece.checked_sub(1).map(|piece| shifts[piece]) {
-                place.offset += bytes;
-                place.line += lines;
+            if let Some(shift) = piece.checked_sub(1).map(|piece| shifts[piece]) {
+                *place = shift.moved(*place);
             }
         };
         moved(&mut self.place);

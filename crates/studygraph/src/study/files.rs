@@ -1,13 +1,13 @@
 //! CSV files beside a study that stand for some of its fields.
 //!
-//! What is read is written behind the text of the study, under the key `files`, as what is set from outside is: the text that
-//! manifests, archives and shards keep is the whole study, and by itself gives the same tables. `file: NAME.csv` in a stage is then
+//! What is read is merged into the tree of the study, under the key `files`, as what is set from outside is: the text that
+//! manifests, archives and shards store is the whole study, and by itself gives the same tables. `file: NAME.csv` in a stage is then
 //! what the file says (`columns.rs`). A message about it has the file for its place. Must not know: fields, what any is for.
 
 use std::path::{Component, Path, PathBuf};
 
 use super::assemble::{FILES, SET};
-use super::changes::behind;
+use super::changes::{Added, Section};
 use super::columns;
 use super::document::{Content, KeyValue, Node, nothing};
 use super::words::quote;
@@ -17,8 +17,9 @@ use declare::parameter::FILE;
 
 /// The key under which the line that names the columns of a file stands where the file was named: no study can write it.
 const READ: &str = "\0";
-/// Columns by which a file's lines are set in below its name.
+/// Columns by which a file's lines are set in below its name, and from the edge.
 const INDENT: usize = 2;
+const WIDTH: usize = 2 + INDENT;
 
 /// A file whose text was written behind that of a study.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -87,43 +88,52 @@ fn pair<'n>(root: &'n Node, key: &str) -> Option<&'n KeyValue> {
     pairs.iter().find(|pair| pair.key == key)
 }
 
-/// The text of a study, and behind it that of each file that it names and does not hold yet; `root` is its tree with what is set.
+/// Adds the text of each file that a study names and does not hold yet behind its own text and under the key `files` of its tree;
+/// `set` is that tree with what is set.
 ///
 /// # Errors
 /// When one cannot be read.
-pub(super) fn attach(text: &str, root: &Node, path: &Path) -> Result<(String, Vec<Attached>), LoadError> {
+pub(super) fn attach(
+    root: &mut Node,
+    added: &mut Added,
+    set: &Node,
+    path: &Path,
+) -> Result<Vec<Attached>, LoadError> {
     let held = |name: &str| pair(root, FILES).is_some_and(|held| pair(&held.node, name).is_some());
-    let missing: Vec<_> = named(root).into_iter().filter(|(name, _)| !held(name)).collect();
+    let missing: Vec<_> = named(set).into_iter().filter(|(name, _)| !held(name)).collect();
     if missing.is_empty() {
-        return Ok((text.to_owned(), Vec::new()));
+        return Ok(Vec::new());
     }
-    let refused = |found: Diagnostic| LoadError::new(path, text.to_owned(), found);
-    let (mut whole, inside) = behind(text, root, FILES).map_err(refused)?;
+    let study = added.text.clone();
+    let refused = |found: Diagnostic| LoadError::new(path, study.clone(), found);
+    let mut section = Section::new(added, FILES);
     let mut attached = Vec::with_capacity(missing.len());
     for (name, place) in missing {
         let file = beside(path, &name).map_err(|found| refused(found.at(place)))?;
-        let read = read::beside(&file, &name, (text, place, path))?;
+        let read = read::beside(&file, &name, (&study, place, path))?;
         let read = read.trim_start_matches('\u{feff}').replace("\r\n", "\n").replace('\r', "\n");
         let read = read.trim_end().to_owned();
         // A name in double quotes of JSON is one in those of YAML.
-        whole += &format!("{inside}{}: |{INDENT}\n", serde_json::Value::from(name));
-        let (from, line) = (whole.len(), whole.matches('\n').count());
-        let indent = inside.len() + INDENT;
+        section.put(&format!("  {}: |{INDENT}\n", serde_json::Value::from(name)));
+        let (from, line) = (section.end(), section.line() - 1);
         for row in read.split('\n') {
             if !row.is_empty() {
-                whole.extend(std::iter::repeat_n(' ', indent));
-                whole += row;
+                section.put(&format!("{:WIDTH$}{row}", ""));
             }
-            whole.push('\n');
+            section.put("\n");
         }
         // What is archived is read as one file.
-        if whole.len() as u64 > read::LARGEST {
+        if section.end() as u64 > read::LARGEST {
             let message = format!("the study and its files together are larger than {} KiB", read::LARGEST >> 10);
             return Err(refused(Diagnostic::new(message).at(place).help("leave out points, or average them")));
         }
-        attached.push(Attached { path: file, text: read, from, to: whole.len(), line, indent });
+        attached.push(Attached { path: file, text: read, from, to: section.end(), line, indent: WIDTH });
     }
-    Ok((whole, attached))
+    section.merge(root).map_err(|wrong| {
+        let about = attached.iter().find_map(|file| file.placed(&wrong));
+        about.unwrap_or_else(|| LoadError::new(path, added.text.clone(), wrong))
+    })?;
+    Ok(attached)
 }
 
 /// Where the file of this name is.

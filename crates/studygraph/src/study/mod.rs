@@ -30,6 +30,7 @@ mod read;
 pub mod schema;
 pub mod settings;
 mod spread;
+mod stored;
 mod structure;
 #[cfg(test)]
 mod tests;
@@ -66,8 +67,7 @@ pub struct Study {
     pub seed: u64,
     /// Where it was read from.
     pub path: PathBuf,
-    /// The file's text, for messages that show a line of it, and behind it what was set from outside: with it, it is the
-    /// text of the same study.
+    /// One YAML document of the whole study: the file's text, and with it what was set from outside and the texts of its files.
     pub text: String,
     /// What was set from outside.
     pub changes: Changes,
@@ -136,7 +136,7 @@ impl Study {
     /// What is wrong with it, found after it was read.
     #[must_use]
     pub fn refused(&self, wrong: impl Into<Faults>) -> LoadError {
-        self.changes.placed(LoadError::new(&self.path, self.text.clone(), wrong))
+        self.changes.placed(LoadError::new(&self.path, self.changes.text(&self.text).to_owned(), wrong))
     }
 }
 

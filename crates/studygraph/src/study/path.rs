@@ -120,7 +120,7 @@ impl FieldPath {
     /// The first step that leads nowhere, with the nearest name that there is.
     pub fn find(&self, stages: &[KeyValue], kinds: &[&'static Kind]) -> Result<Target, Diagnostic> {
         // What is left out in the text is filled in on the way.
-        self.reach(&mut stages.to_vec(), kinds).map(|(_, target)| target)
+        self.reach(&mut stages.to_vec(), kinds, false).map(|(_, target)| target)
     }
 
     /// What stands where it leads, or, where it is left out in the text, its default; nothing where there is none.
@@ -128,15 +128,16 @@ impl FieldPath {
     /// # Errors
     /// As [`FieldPath::find`].
     pub fn written(&self, stages: &[KeyValue], kinds: &[&'static Kind]) -> Result<Node, Diagnostic> {
-        self.reach(&mut stages.to_vec(), kinds).map(|(node, _)| node.clone())
+        self.reach(&mut stages.to_vec(), kinds, false).map(|(node, _)| node.clone())
     }
 
-    /// Puts `value` where it leads, in the place of what was written there or left out.
+    /// Puts `value` where it leads, in the place of what was written there or left out; a label that is not there yet, such as
+    /// that of a new design, is added.
     ///
     /// # Errors
     /// As [`FieldPath::find`].
     pub fn set(&self, stages: &mut [KeyValue], kinds: &[&'static Kind], value: Node) -> Result<(), Diagnostic> {
-        let (node, _) = self.reach(stages, kinds)?;
+        let (node, _) = self.reach(stages, kinds, true)?;
         *node = value;
         Ok(())
     }
@@ -145,6 +146,7 @@ impl FieldPath {
         &self,
         stages: &'t mut [KeyValue],
         kinds: &[&'static Kind],
+        adds: bool,
     ) -> Result<(&'t mut Node, Target), Diagnostic> {
         let (stage, place) = (self.steps[0].shown(""), self.steps[0].place);
         let position = stages.iter().position(|pair| pair.key == stage).ok_or_else(|| {
@@ -217,7 +219,11 @@ impl FieldPath {
                 }
                 At::Value(field, Shape::Map(item)) => {
                     let pairs = mapping(current).ok_or_else(|| step.nothing_below(&label))?;
-                    let (position, steps) = self.labelled(next, pairs, &label)?;
+                    let labelled = self.labelled(next, pairs, &label);
+                    if let (Err(_), true, [Step { word: Word::Name(new), .. }]) = (&labelled, adds, &self.steps[next..]) {
+                        pairs.push(KeyValue { key: new.clone(), place: self.place, node: nothing(self.place) });
+                    }
+                    let (position, steps) = labelled.or_else(|_| self.labelled(next, pairs, &label))?;
                     taken = steps;
                     (&mut pairs[position].node, At::Value(field, item))
                 }
