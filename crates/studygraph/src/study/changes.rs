@@ -180,6 +180,8 @@ impl Changes {
 
 const OPTION: &str = "--set";
 const NAME: &str = "--name";
+/// The key of a study that is its name.
+const STUDY: &str = "study";
 
 impl Change {
     fn refused(option: &str, value: &str, offset: usize, length: usize, wrong: Diagnostic) -> LoadError {
@@ -202,27 +204,28 @@ fn changed(
     for set in &settings.set {
         entries.push((OPTION, set.clone(), entry(set)?));
     }
-    let named = settings.name.clone().map(|name| (NAME, name.clone(), ("study".to_owned(), name)));
-    let own = pairs.iter().find(|pair| pair.key == "study").map(|pair| &pair.node.content);
-    let is_set = entries.iter().any(|(_, _, (path, _))| path == "study");
+    let named = settings.name.clone().map(|name| (NAME, name.clone(), (STUDY.to_owned(), name)));
+    let set = pairs.iter().find(|pair| pair.key == SET).map(|pair| pair.node.clone());
+    let set = if let Some(Node { content: Content::Mapping(set), .. }) = set { set } else { Vec::new() };
+    // What the study sets itself is its name.
+    let own = set.iter().chain(pairs).find(|pair| pair.key == STUDY).map(|pair| pair.node.content.clone());
+    let is_set = entries.iter().any(|(_, _, (path, _))| path == STUDY);
     match (named, own) {
         (Some(named), _) => entries.insert(0, named),
         (None, Some(Content::Scalar { text, .. })) if !is_set && !entries.is_empty() => {
-            let name = name_of(text, &settings.set);
-            entries.insert(0, (NAME, name.clone(), ("study".to_owned(), name)));
+            let name = name_of(&text, &settings.set);
+            entries.insert(0, (NAME, name.clone(), (STUDY.to_owned(), name)));
         }
         _ => {}
     }
     if entries.is_empty() {
         return Ok(());
     }
-    let own = pairs.iter().find(|pair| pair.key == SET).map(|pair| pair.node.clone());
     let mut section = Section::new(added, SET);
     for (at, (option, value, (key, written))) in entries.iter().enumerate() {
         let first = entries[..at].iter().find(|(_, _, (earlier, _))| earlier == key);
         let first = first.map(|(option, value, _)| format!("`{option} {value}`")).or_else(|| {
-            let Content::Mapping(own) = &own.as_ref()?.content else { return None };
-            let own = own.iter().find(|own| own.key == *key)?;
+            let own = set.iter().find(|own| own.key == *key && own.key != STUDY)?;
             Some(format!("in line {} of {}", own.place.line, path.display()))
         });
         if let Some(first) = first {
@@ -235,6 +238,12 @@ fn changed(
         section.put(&format!("{key}: {written}"));
         changes.set.push(Change { option, value: value.clone(), from, to: section.end(), key: key.len() });
         section.put("\n");
+    }
+    if let Content::Mapping(pairs) = &mut root.content
+        && let Some(Content::Mapping(own)) =
+            pairs.iter_mut().find(|pair| pair.key == SET).map(|pair| &mut pair.node.content)
+    {
+        own.retain(|own| own.key != STUDY);
     }
     section.merge(root).map_err(|wrong| changes.placed(LoadError::new(path, added.text.clone(), wrong)))
 }

@@ -266,3 +266,82 @@ fn a_study_may_set_its_own_paths_and_more_can_be_set_behind_them() {
     assert_eq!(record(&study, "pair").quantity("module").to_bits(), 0.004_f64.to_bits());
     load(&study.text).unwrap();
 }
+
+#[test]
+fn anything_can_be_set_whatever_the_end_of_the_text() {
+    let plain = with(VALID, &["pair.module=4 mm"], None).unwrap();
+    let canonical = |study: &Study| {
+        let mut writer = declare::digest::Writer::new("test");
+        study.nodes.iter().for_each(|node| node.record.write(&mut writer));
+        (study.name.clone(), writer.finish())
+    };
+    let json = serde_json::to_string(&value(&parse(VALID).unwrap().unwrap())).unwrap();
+    let loose = |text: &str| with(text, &["pair.module=4 mm"], None).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    for text in [
+        format!("{VALID}..."),
+        format!("{VALID}...\n"),
+        format!("{VALID}... # the end\n# and a comment\n"),
+        format!("---\n{VALID}...\n"),
+        format!("# before\n--- # a comment\n{VALID}\n\n# behind\n"),
+        format!("\u{feff}{VALID}...\n").replace('\n', "\r\n"),
+        format!("{VALID}  \t\n"),
+        format!("{}\n   # a comment without an end", VALID.trim_end()),
+        VALID.trim_end().to_owned(),
+        VALID.replace('\n', "\r\n"),
+        VALID.replacen("study: small", "? study\n: small", 1),
+        VALID.replacen("study: small", "&a study: small", 1),
+        json.clone(),
+        format!("\u{feff}{json}"),
+        format!("--- {json}\n...\n"),
+        format!("{}, }} # a comment }}", json.strip_suffix('}').unwrap()),
+        json.replace(',', ",\n\t"),
+    ] {
+        let study = loose(&text);
+        assert_eq!(canonical(&study), canonical(&plain), "{text}");
+        // What is stored is one document of the same study, and more can be set in that.
+        let again = load(&study.text).unwrap_or_else(|error| panic!("{error}\n{}", study.text));
+        assert_eq!(canonical(&again), canonical(&plain), "{text}\n{}", study.text);
+        let more = with(&study.text, &["ste.factor=2"], Some("more")).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(canonical(&load(&more.text).unwrap()), canonical(&more));
+        // A message has a place of the file, or the option.
+        let lines = text.lines().count();
+        let wrong = text.replacen("Contact", "Contract", 1).replacen("206 GPa", "206 mm", 1);
+        if let Err(message) = with(&wrong, &["pair.pinion.face_width=1 mm"], None) {
+            let line: usize = message.split(':').nth(1).unwrap().parse().unwrap_or_else(|_| panic!("{message}"));
+            assert!(message.starts_with("t.yaml:") && line <= lines, "{message}");
+        }
+        let message = with(&text, &["pair.modul=4 mm"], None).err().unwrap();
+        assert!(message.starts_with("--set pair.modul=4 mm:1:6: unknown field"), "{message}");
+    }
+}
+
+/// A tree as JSON; what is a number or nothing there stays one.
+fn value(node: &crate::study::document::Node) -> serde_json::Value {
+    match &node.content {
+        Content::Scalar { text, quoted: false } => {
+            serde_json::from_str(text).unwrap_or_else(|_| text.as_str().into())
+        }
+        Content::Scalar { text, .. } => text.as_str().into(),
+        Content::Sequence(items) => items.iter().map(value).collect(),
+        Content::Mapping(pairs) => {
+            serde_json::Value::Object(pairs.iter().map(|pair| (pair.key.clone(), value(&pair.node))).collect())
+        }
+    }
+}
+
+#[test]
+fn a_label_that_is_not_there_is_added() {
+    let study = set("designs.designs.new=[tip_relief: { amount: 9 um }]");
+    let labels: Vec<&str> = record(&study, "designs").map("designs").iter().map(|(name, _)| name.as_str()).collect();
+    assert!(labels.ends_with(&["new"]) && labels.len() == 1 + record(&load(VALID).unwrap(), "designs").map("designs").len());
+    assert_eq!(record(&set("designs.designs.new=[]"), "designs").map("designs").len(), labels.len());
+    // What it holds must fit, and nothing is below what is not there.
+    for (set, expected) in [
+        ("designs.designs.new=3", "--set designs.designs.new=3:1:21: "),
+        ("designs.designs.new[0].tip_relief.amount=3 um", "--set designs.designs.new[0].tip_relief.amount=3 um:1:17: there is no `new`"),
+        ("designs.designs.bad name=[]", "--set designs.designs.bad name=[]:1:20: "),
+    ] {
+        let message = with(VALID, &[set], None).err().unwrap();
+        assert!(message.starts_with(expected), "{message}");
+    }
+}
