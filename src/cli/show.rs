@@ -68,14 +68,21 @@ pub(super) fn new_study(file: &Path, template: &str, as_json: bool) -> Result<()
 /// Prints the pair of a REXS file as a study.
 pub(super) fn import(file: &Path, stage: Option<&str>, as_json: bool) -> Result<(), Ending> {
     let cannot = |error: std::io::Error| Ending::Usage(format!("cannot read {}: {error}", file.display()));
-    let refused = |problem: String| Ending::Usage(format!("{}: {problem}", file.display()));
     let mut bytes = Vec::new();
     // No more than one byte too many, whatever the file says of its size.
     File::open(file).map_err(cannot)?.take(rexs::MOST_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(cannot)?;
-    let text = String::from_utf8(bytes).map_err(|_| refused("it is not UTF-8".to_owned()))?;
-    let study = rexs::geometry(&text, stage).map_err(|error| Ending::Usage(error.in_file(file)))?;
+    let text = rexs::text_of(bytes).map_err(|error| Ending::Usage(error.in_file(file)))?;
+    let rexs::Imported { study, read, follows, not_supported, notes } =
+        rexs::import(&text, stage).map_err(|error| Ending::Usage(error.in_file(file)))?;
     if as_json {
-        json::answer(&json!({ "file": file.display().to_string(), "study": study }));
+        json::answer(&json!({
+            "file": file.display().to_string(),
+            "study": study,
+            "read": read,
+            "follows": follows,
+            "not_supported": not_supported,
+            "notes": notes,
+        }));
     } else {
         out(&study);
     }

@@ -6,7 +6,10 @@
 
 use std::path::Path;
 
-use super::{Refusal, RexsPair, Said};
+use super::Refusal;
+use super::cutting::{StatedRack, TipCorner};
+use super::gear::{RexsPair, Thickness, is_other};
+use super::model::Said;
 use crate::program::load_text;
 
 /// Stands where a study needs a value that the file does not give: a study with it is refused right there.
@@ -17,7 +20,7 @@ const OPEN: &str = "FILL_IN";
 struct Written {
     text: String,
     /// First byte and end in the text, byte in the file.
-    said: Vec<(usize, usize, usize)>,
+    said: Vec<(usize, usize, Option<usize>)>,
     /// First byte of what is left open, which value, and a number that is likely.
     open: Vec<(usize, String, String)>,
     /// What the file does not say and the study's defaults do.
@@ -49,6 +52,38 @@ impl Written {
         self.field(", ", name, said, " mm");
     }
 
+    /// Fields between `before` and `after`; nothing where none is said.
+    fn group(&mut self, mut before: &str, fields: &[(&str, Option<Said>, &str)], after: &str) {
+        for (name, said, unit) in fields {
+            self.field(before, name, *said, unit);
+            before = if said.is_some() { ", " } else { before };
+        }
+        if fields.iter().any(|(_, said, _)| said.is_some()) {
+            self.put(after);
+        }
+    }
+
+    fn rack(&mut self, before: &str, after: &str, rack: StatedRack, whose: &str) {
+        let fields = rack.fields();
+        let fields_said = fields.map(|(name, said, unit, _)| (name, said, unit));
+        self.group(&format!("{before}rack: {{ "), &fields_said, "");
+        // Grinding leaves a notch where the allowance is larger than the protuberance.
+        let protuberance = rack.protuberance.map_or(0.0, |said| said.value);
+        if rack.machining_allowance.is_some_and(|allowance| allowance.value > protuberance) {
+            self.put(", notch_radius: ");
+            self.open.push((self.text.len(), format!("{whose} notch_radius (modules)"), "0.2".to_owned()));
+            self.put(OPEN);
+        }
+        if fields.iter().any(|(_, said, ..)| said.is_some()) {
+            self.put(&format!(" }}{after}"));
+        }
+        for (name, said, _, usual) in fields {
+            if let (None, Some(usual)) = (said, usual) {
+                self.missing.push(format!("{whose} {name} ({usual} modules stand for it)"));
+            }
+        }
+    }
+
     /// With likely numbers for what is left open, and where a byte of that text stands in this one.
     fn filled(&self) -> (String, impl Fn(usize) -> usize) {
         let (mut filled, mut from) = (String::new(), 0);
@@ -68,22 +103,28 @@ impl Written {
     }
 }
 
-impl RexsPair {
+/// A text, what the file does not say, and what is left open: its byte, which value, and a likely number.
+type Body = (String, Vec<String>, Vec<(usize, String, String)>);
+
+/// The text of a study below its comments, each open value with the line in which it stands.
+pub(super) fn with_head(mut head: Vec<String>, body: &str, open: &[(usize, String, String)]) -> String {
+    let lines = head.len() + open.len();
+    for (at, what, _) in open {
+        let line = lines + 1 + body[..*at].matches('\n').count();
+        head.push(format!("# It does not say: {what}; fill it in in line {line}, where {OPEN} stands."));
+    }
+    head.join("\n") + "\n" + body
+}
+
+impl RexsPair<'_> {
     /// The study.
     ///
     /// # Errors
     /// Where the gears are not a pair, or a value is one that no study takes.
-    pub(super) fn text(&self, version: &str) -> Result<String, Refusal> {
+    pub(super) fn text(&self) -> Result<Body, Refusal> {
         let text = self.body()?;
         self.check(&text)?;
-        let mut head = vec![format!("# From a file of REXS {version}.")];
-        head.extend(text.missing.iter().map(|what| format!("# It does not say: {what}.")));
-        let lines = head.len() + text.open.len();
-        for (at, what, _) in &text.open {
-            let line = lines + 1 + text.text[..*at].matches('\n').count();
-            head.push(format!("# It does not say: {what}; fill it in in line {line}, where {OPEN} stands."));
-        }
-        Ok(head.join("\n") + "\n" + &text.text)
+        Ok((text.text, text.missing, text.open))
     }
 
     fn body(&self) -> Result<Written, Refusal> {
@@ -98,21 +139,15 @@ impl RexsPair {
         if angle.is_none() {
             text.missing.push("normal_pressure_angle (20 deg stands for it)".to_owned());
         }
-        let rack = [
-            ("addendum", self.common("rack addenda", |gear| gear.addendum)?, "1.0"),
-            ("dedendum", self.common("rack dedenda", |gear| gear.dedendum)?, "1.25"),
-            ("tip_radius", self.common("rack tip radii", |gear| gear.rack_tip_radius)?, "0.38"),
-        ];
-        let mut before = "    rack: { ";
-        for (name, said, usual) in rack {
-            text.field(before, name, said, "");
-            match said {
-                Some(_) => before = ", ",
-                None => text.missing.push(format!("the rack's {name} ({usual} modules stand for it)")),
-            }
-        }
-        if before == ", " {
-            text.put(" }\n");
+        let racks: Vec<StatedRack> = self.gears.iter().map(|gear| gear.rack).collect();
+        let is_common = (0..RACK).all(|at| {
+            let said: Vec<Said> = racks.iter().filter_map(|rack| rack.fields()[at].1).collect();
+            said.windows(2).all(|two| !is_other(two[0], two[1]))
+        });
+        if is_common {
+            let mut common = racks[0];
+            racks[1..].iter().for_each(|other| common.fill(other));
+            text.rack("    ", "\n", common, "the rack's");
         }
         for (name, gear) in ["pinion", "gear"].iter().zip(&self.gears) {
             text.field(&format!("    {name}: {{ "), "teeth", Some(gear.teeth), "");
@@ -121,20 +156,81 @@ impl RexsPair {
             text.needed("bore_radius", gear.bore_diameter.map(|said| said.map(|it| 0.5 * it)), name, 0.05 * size);
             text.field(", ", "profile_shift", gear.shift, "");
             text.field(", ", "tip_radius", gear.tip_diameter.map(|said| said.map(|it| 0.5 * it)), " mm");
-            if gear.shift.is_none() {
+            let follows = self.centre_distance.is_some() && self.gears.iter().any(|other| other.shift.is_some());
+            if gear.shift.is_none() && follows {
+                text.put(", from_centre_distance: profile_shift");
+                let what =
+                    format!("addendum_modification_coefficient of the {name} (it follows from the centre distance)");
+                text.missing.push(what);
+            } else if gear.shift.is_none() {
                 text.missing.push(format!("addendum_modification_coefficient of the {name} (0 stands for it)"));
             }
-            let mut before = ", material: { ";
-            for (name, said, unit) in
-                [("youngs_modulus", gear.youngs_modulus, " MPa"), ("poisson_ratio", gear.poisson_ratio, "")]
-            {
-                text.field(before, name, said, unit);
-                before = if said.is_some() { ", " } else { before };
+            if !is_common {
+                text.rack(", ", "", gear.rack, &format!("the {name}'s rack's"));
             }
-            text.put(if before == ", " { " } }\n" } else { " }\n" });
+            match gear.tip {
+                Some(TipCorner::Chamfer(size)) => {
+                    text.group(", tip: { chamfer: { ", &[("size", Some(size), " mm")], " } }")
+                }
+                Some(TipCorner::SemiTopping(angle, height)) => {
+                    let fields = [("angle", Some(angle), " deg"), ("height", Some(height), " mm")];
+                    text.group(", tip: { semi_topping: { ", &fields, " } }");
+                }
+                None => {}
+            }
+            match gear.thickness {
+                Some(Thickness::Allowance(upper, lower)) => {
+                    let fields = [("upper", Some(upper), " mm"), ("lower", lower, " mm")];
+                    text.group(", tooth_thickness: { allowance: { ", &fields, " } }");
+                }
+                Some(Thickness::Span(teeth, span)) => {
+                    let fields = [("teeth", Some(teeth), ""), ("largest", Some(span), " mm")];
+                    text.group(", tooth_thickness: { span: { ", &fields, " } }");
+                }
+                Some(Thickness::OverBalls(ball, largest, smallest)) => {
+                    let fields = [
+                        ("ball_diameter", Some(ball), " mm"),
+                        ("largest", Some(largest), " mm"),
+                        ("smallest", smallest, " mm"),
+                    ];
+                    text.group(", tooth_thickness: { over_balls: { ", &fields, " } }");
+                }
+                None => {}
+            }
+            let with = [("span_teeth", gear.span_teeth, ""), ("ball_diameter", gear.ball_diameter, " mm")];
+            text.group(", measured_with: { ", &with, " }");
+            let material = [
+                ("youngs_modulus", gear.youngs_modulus, " MPa"),
+                ("poisson_ratio", gear.poisson_ratio, ""),
+                ("density", gear.density, " kg/m^3"),
+            ];
+            text.group(", material: { ", &material, " }");
+            text.put(" }\n");
         }
         text.field("    ", "centre_distance", self.centre_distance, " mm\n");
+        if let [Some(upper), Some(lower)] = self.centre_distance_allowance {
+            let fields = [("upper", Some(upper), " mm"), ("lower", Some(lower), " mm")];
+            text.group("    centre_distance_allowance: { ", &fields, " }\n");
+        }
+        self.modifications(&mut text);
         Ok(text)
+    }
+
+    fn modifications(&self, text: &mut Written) {
+        if self.gears.iter().all(|gear| gear.modifications.is_empty()) {
+            return;
+        }
+        text.put("  designs:\n    kind: modification\n    pair: pair\n    designs:\n      imported:\n");
+        for (name, gear) in ["pinion", "gear"].iter().zip(&self.gears) {
+            for modification in &gear.modifications {
+                text.put(&format!("        - {}: {{ gear: {name}", modification.family));
+                for (field, said) in &modification.fields {
+                    text.field(", ", field, Some(*said), " mm");
+                }
+                text.put(&modification.curve.map_or(String::new(), |curve| format!(", curve: {curve}")));
+                text.put(" }\n");
+            }
+        }
     }
 
     /// Reads what was written, and says where the file says what is wrong with it.
@@ -145,6 +241,33 @@ impl RexsPair {
         // A message about a whole gear or the whole pair stands at the stage.
         let said = text.said.iter().find(|(from, to, _)| (*from..*to).contains(&byte));
         let at = said.map_or(self.at, |(_, _, at)| *at);
-        Err(Refusal::new(error.diagnostic.message.clone()).at(at))
+        Err(Refusal::new(error.diagnostic.message.clone()).maybe_at(at))
+    }
+}
+
+/// Fields of a rack.
+const RACK: usize = 6;
+
+impl StatedRack {
+    /// Each with its name, its unit, and the default that stands for what is not said.
+    fn fields(&self) -> [(&'static str, Option<Said>, &'static str, Option<&'static str>); RACK] {
+        [
+            ("addendum", self.addendum, "", Some("1.0")),
+            ("dedendum", self.dedendum, "", Some("1.25")),
+            ("tip_radius", self.tip_radius, "", Some("0.38")),
+            ("protuberance", self.protuberance, "", None),
+            ("protuberance_angle", self.protuberance_angle, " deg", None),
+            ("machining_allowance", self.machining_allowance, "", None),
+        ]
+    }
+
+    /// What is not said as another rack has it.
+    fn fill(&mut self, other: &Self) {
+        self.addendum = self.addendum.or(other.addendum);
+        self.dedendum = self.dedendum.or(other.dedendum);
+        self.tip_radius = self.tip_radius.or(other.tip_radius);
+        self.protuberance = self.protuberance.or(other.protuberance);
+        self.protuberance_angle = self.protuberance_angle.or(other.protuberance_angle);
+        self.machining_allowance = self.machining_allowance.or(other.machining_allowance);
     }
 }
