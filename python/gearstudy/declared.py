@@ -559,6 +559,11 @@ class MeasuredRelief(Modification):
         flank, or the end of the face, when left out. -10 to 10 m.
     evaluation_end : number [m], optional
         Up to which it is evaluated; the tip, or the other end of the face, when left out. -10 to 10 m.
+    evaluation_start_diameter : number [m], optional
+        Instead of `evaluation_start`: diameter from which a trace along the profile is evaluated. 0.0001 to 100 m.
+    evaluation_end_diameter : number [m], optional
+        Instead of `evaluation_end`: diameter up to which it is evaluated, such as the tip form circle's. 0.0001 to
+        100 m.
     teeth : int, optional
         z: number of teeth of the gear that was measured; another gear is refused. 4 to 10000.
     module : number [m], optional
@@ -586,6 +591,8 @@ class MeasuredRelief(Modification):
         face_positions: Sequence[Quantity] | None = None,
         evaluation_start: Quantity | None = None,
         evaluation_end: Quantity | None = None,
+        evaluation_start_diameter: Quantity | None = None,
+        evaluation_end_diameter: Quantity | None = None,
         teeth: int | None = None,
         module: Quantity | None = None,
         smoothing: Literal["none", "gaussian"] | None = None,
@@ -600,6 +607,8 @@ class MeasuredRelief(Modification):
             deviations=deviations,
             evaluation_start=evaluation_start,
             evaluation_end=evaluation_end,
+            evaluation_start_diameter=evaluation_start_diameter,
+            evaluation_end_diameter=evaluation_end_diameter,
             teeth=teeth,
             module=module,
             smoothing=smoothing,

@@ -123,7 +123,9 @@ fn what_is_wrong_with_a_file_stands_in_it() {
         (other(30, "8,6695;55"), "31:8: deviation 27 stands 57"),
         (reversed, "4:1: `roll_lengths` falls all along"),
         (other(30, "9,0x;-3"), "31:1: "),
-        (other(30, "8,6695;NaN"), "31:8: `NaN um` is not a number"),
+        (other(30, "8,6695;NaN"), "31:8: `NaN` stands for a missing value of `deviations`"),
+        (other(30, "8,6695;"), "31:8: a value of `deviations` is missing"),
+        (other(30, "<<<<<<< HEAD"), "31:1: a merge left both versions at line 31; keep one"),
         (other(30, lines[29]), "31:1: point 27 of `roll_lengths` is the same as the one before it"),
         (all("# teeth: 19", "# teeth: 48"), "2:10: design `made`, measured: a gear of 48 teeth was measured"),
         (all("# module: 3 mm", "# module: 4 mm"), "3:11: design `made`, measured: a gear of module 4"),
@@ -159,4 +161,101 @@ fn what_is_wrong_with_a_file_stands_in_it() {
     let set = "designs.designs.made[0].measured.file=nowhere.csv";
     let said = desk.run(&["check", "traced.yaml", "--set", set], 2).1;
     assert!(said.starts_with(&format!("--set {set}:1:39: there is no file `nowhere.csv`")), "{said}");
+}
+
+/// A study with a CSV file, however its text ends: what is archived is one document that gives the same tables.
+#[test]
+fn a_study_of_any_form_may_have_a_file() {
+    let desk = desk(&trace(12.0));
+    desk.run(&["run", "traced.yaml", "--quiet"], 0);
+    let expected = content(&desk, "ste.summary");
+    let json = serde_json::json!({
+        "study": "traced",
+        "seed": 1,
+        "stages": {
+            "pair": {
+                "kind": "geometry",
+                "module": "3 mm",
+                "pinion": { "teeth": 19, "face_width": "20 mm", "bore_radius": "10 mm" },
+                "gear": { "teeth": 48, "face_width": "18 mm", "bore_radius": "20 mm" },
+            },
+            "designs": {
+                "kind": "modification",
+                "pair": "pair",
+                "designs": { "made": [{ "measured": { "gear": "pinion", "file": "./traces/tooth.csv" } }] },
+            },
+            "stiffness": { "kind": "stiffness", "pair": "pair", "method": "energy" },
+            "ste": { "kind": "ste", "stiffness": "stiffness", "designs": "designs", "torque": "100 N m" },
+        },
+    });
+    for text in [format!("{STUDY}...\n"), json.to_string(), format!("{json:#}\n...\n")] {
+        fs::write(desk.path("traced.yaml"), &text).unwrap();
+        desk.run(&["run", "traced.yaml", "--quiet"], 0);
+        assert_eq!(content(&desk, "ste.summary"), expected, "{text}");
+        desk.run(&["archive", "traced.yaml", "-o", "traced.zip", "--license", "CC-BY-4.0", "--author", "A B"], 0);
+        desk.run(&["verify", "traced.zip"], 0);
+        fs::remove_file(desk.path("traced.zip")).unwrap();
+        desk.run(&["check", "traced.yaml", "--set", "pair.pinion.bore_radius=9 mm"], 0);
+        let said = desk.run(&["check", "traced.yaml", "--set", "pair.pinion.bore_radius=9"], 2).1;
+        assert!(said.starts_with("--set pair.pinion.bore_radius=9:1:25: "), "{said}");
+        // A message about the file of the study, or the CSV file, has a line of that.
+        fs::write(desk.path("traced.yaml"), text.replacen("100 N m", "100 N", 1)).unwrap();
+        let said = desk.run(&["check", "traced.yaml"], 2).1;
+        let line = 1 + text.lines().position(|line| line.contains("100 N m")).unwrap();
+        assert!(said.starts_with(&format!("traced.yaml:{line}:")), "{said}");
+        fs::write(desk.path("traced.yaml"), &text).unwrap();
+        fs::write(desk.path("traces/tooth.csv"), trace(12.0).replacen("teeth: 19", "teeth: 48", 1)).unwrap();
+        let said = desk.run(&["check", "traced.yaml"], 2).1;
+        assert!(said.contains("traces/tooth.csv:2:10: design `made`"), "{said}");
+        fs::write(desk.path("traces/tooth.csv"), trace(12.0)).unwrap();
+    }
+}
+
+/// One file of all teeth, with marks where nothing was measured, and evaluation limits as diameters.
+#[test]
+fn a_file_of_several_teeth_is_read_tooth_by_tooth_or_averaged() {
+    let desk = desk("");
+    let mut text = "# missing: ---\n# teeth: 19\ntooth; roll_lengths [mm]; deviations [um]\n".to_owned();
+    for tooth in [1, 6] {
+        for at in 0..60 {
+            let share = f64::from(at) / 59.0;
+            let deviation = -12.0 * f64::from(tooth) * share * share;
+            let deviation = if at == 30 { "---".to_owned() } else { format!("{deviation:.4}") };
+            let _ = writeln!(text, "{tooth}; {:.4}; {deviation}", 2.5 + 14.0 * share);
+        }
+    }
+    fs::write(desk.path("traces/tooth.csv"), text).unwrap();
+    let cells = |condition: &str, more: &str, table: &str, columns: &str| -> Result<Vec<f64>, String> {
+        let study = STUDY.replace("traces/tooth.csv", &format!("\"traces/tooth.csv{condition}\"{more}"));
+        fs::write(desk.path("traced.yaml"), study).unwrap();
+        let output = desk.command(&["run", "traced.yaml", "--quiet", "--want", table]).output().unwrap();
+        if !output.status.success() {
+            return Err(String::from_utf8(output.stderr).unwrap());
+        }
+        let csv = desk.run(&["table", "traced.yaml", table, "--columns", columns, "--format", "csv"], 0).0;
+        let row = csv.lines().nth(1).unwrap_or_default().to_owned();
+        Ok(row.split(',').filter_map(|cell| cell.parse().ok()).collect())
+    };
+    let amount = |condition: &str, more: &str| {
+        cells(condition, more, "designs.resolved", "amount").map(|cells| *cells.last().unwrap())
+    };
+    assert!(amount("", "").unwrap_err().contains("traces/tooth.csv:3:1: this file has several teeth: `1`, `6`"));
+    assert!(amount("[tooth=7]", "").unwrap_err().contains("no line has `7` in the column `tooth`"));
+    for (condition, expected) in [("[tooth=1]", 12.0), ("[tooth=6]", 72.0), ("[tooth=mean]", 42.0)] {
+        let found = amount(condition, "").unwrap();
+        assert!((found - expected).abs() < 1e-3, "{condition}: {found}");
+    }
+    // d = 2 √(r_b² + L_y²): 8 and 12 mm of roll length on a base radius of 28.5 cos 20° mm.
+    let base = 28.5 * 20.0_f64.to_radians().cos();
+    let limit = |roll: f64| 2.0 * base.hypot(roll);
+    let more = |start: f64, end: f64| {
+        format!(", evaluation_start_diameter: {} mm, evaluation_end_diameter: {} mm", limit(start), limit(end))
+    };
+    let ends = cells("[tooth=1]", &more(8.0, 12.0), "designs.measured", "start,end").unwrap();
+    let found = &ends[ends.len() - 2..];
+    assert!((found[0] - 8.0).abs() < 1e-9 && (found[1] - 12.0).abs() < 1e-9, "{ends:?}");
+    assert!(amount("[tooth=1]", &more(12.0, 8.0)).unwrap_err().contains("the evaluation ends at"));
+    let both = format!("{}, evaluation_start: 8 mm", more(8.0, 12.0));
+    let said = amount("[tooth=1]", &both).unwrap_err();
+    assert!(said.contains("`evaluation_start` and `evaluation_start_diameter` say the same limit"), "{said}");
 }

@@ -40,7 +40,7 @@ impl Settings {
 pub struct Changes {
     set: Vec<Change>,
     files: Vec<Attached>,
-    /// The text in which places count: that of the file, and what was added behind it.
+    /// The text in which places count, that of the file and what was added behind it; empty where the study's own text is that.
     text: String,
 }
 
@@ -94,18 +94,18 @@ impl Refused {
 /// # Errors
 /// All that is wrong with it.
 pub fn examine(text: &str, path: &Path, program: &'static Program, settings: &Settings) -> Result<Study, Refused> {
-    let Whole { root, added, stored, changes } = Whole::of(text, path, program, settings)?;
-    let (study, wrong) = assemble::examine(root, &added.text, path, program);
-    let changes = Changes { text: added.text, ..changes };
+    let Whole { root, added: Added { text: shown, .. }, stored, changes } = Whole::of(text, path, program, settings)?;
+    let (study, wrong) = assemble::examine(root, &shown, path, program);
+    let changes = Changes { text: if shown == stored { String::new() } else { shown.clone() }, ..changes };
     match (Faults::all(wrong), study) {
         (Ok(()), Some(study)) => Ok(Study { text: stored, changes, ..study }),
         (Err(wrong), sound) => {
-            let error = LoadError::new(path, changes.text.clone(), wrong);
+            let error = LoadError::new(path, shown, wrong);
             let sound = sound.map(|study| Box::new(Study { changes: changes.clone(), text: stored, ..study }));
             Err(Refused { error, changes: Box::new(changes), sound })
         }
         // What is no study has something wrong with it.
-        (Ok(()), None) => Err(LoadError::new(path, changes.text, Diagnostic::new("this is not a study")).into()),
+        (Ok(()), None) => Err(LoadError::new(path, shown, Diagnostic::new("this is not a study")).into()),
     }
 }
 
@@ -129,8 +129,7 @@ impl Whole {
             if added.text.contains(FILE.name)
                 && let Ok(set) = assemble::with_what_is_set(root.clone(), program.kinds)
             {
-                changes.files =
-                    files::attach(root, &mut added, &set, path).map_err(|error| changes.placed(error))?;
+                changes.files = files::attach(root, &mut added, &set, path).map_err(|error| changes.placed(error))?;
             }
         }
         let stored = match &root {

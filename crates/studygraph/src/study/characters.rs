@@ -5,7 +5,7 @@
 
 use super::place::place_at;
 use declare::error::{Diagnostic, Place};
-use declare::text::{is_unfit, number};
+use declare::text::{is_unfit, merge_conflict, number};
 
 /// Looks through a whole file, comments too: the parser takes some of these characters for the end of the text. Line ends
 /// may be of any kind.
@@ -16,6 +16,20 @@ pub fn check(text: &str) -> Result<(), Diagnostic> {
     let found = text.char_indices().find(|(_, character)| *character != '\r' && is_unfit(*character));
     let refused = |(at, character): (usize, char)| cannot_hold(character).at(place_at(text, at, character.len_utf8()));
     found.map_or(Ok(()), |found| Err(refused(found)))
+}
+
+/// Looks for the marks of a merge, which the parser would take for names.
+///
+/// # Errors
+/// The lines of the first conflict.
+pub fn check_merged(text: &str) -> Result<(), Diagnostic> {
+    let Some((first, last)) = merge_conflict(text) else { return Ok(()) };
+    let offset = text.split_inclusive('\n').take(first - 1).map(str::len).sum();
+    let length = text[offset..].lines().next().map_or(0, str::len);
+    let lines = if first == last { format!("at line {first}") } else { format!("from line {first} to {last}") };
+    let help = "remove the other, and the lines that begin with `<<<<<<<`, `|||||||`, `=======` or `>>>>>>>`";
+    let message = format!("a merge left both versions {lines}; keep one");
+    Err(Diagnostic::new(message).at(place_at(text, offset, length)).help(help))
 }
 
 pub fn cannot_hold(character: char) -> Diagnostic {

@@ -2,8 +2,10 @@
 //!
 //! The first line that is no comment names the columns, each as a field and its unit: `roll_lengths [mm]`. Columns are parted by `;`, a
 //! tab or a comma; where it is no comma, numbers may have decimal commas. Columns of one name follow each other in one list. Every
-//! value keeps its place in the file. Must not know: fields, what any is for.
+//! value keeps its place in the file. Lines that do not count are left out by `conditions.rs`. Must not know: fields, what any is for.
 
+use super::characters::check_merged;
+use super::conditions::{Condition, TOOTH, average, chosen, is_mark, is_same, marks};
 use super::document::{Content, KeyValue, Node, parse};
 use super::words::quote;
 use declare::error::{Diagnostic, Place, nearest};
@@ -11,33 +13,46 @@ use declare::units::{UnitError, parse_unit, symbols};
 
 /// One cell of a line.
 #[derive(Clone, Copy)]
-struct Cell<'a> {
-    text: &'a str,
-    place: Place,
+pub(super) struct Cell<'a> {
+    pub text: &'a str,
+    pub place: Place,
 }
 
 /// A column.
-struct Column<'a> {
-    name: Cell<'a>,
+pub(super) struct Column<'a> {
+    pub name: Cell<'a>,
     /// None of a plain number.
     unit: Option<&'a str>,
+    /// Whether its values say which lines are meant, and are no field.
+    pub is_key: bool,
 }
 
-/// The fields that the text says, in the order in which it does, and the line that names the columns.
+/// A line of values.
+pub(super) struct Line<'a> {
+    pub cells: Vec<Cell<'a>>,
+}
+
+/// The fields that the text says, in the order in which it does, and the line that names the columns; of the lines only those that
+/// meet `conditions`.
 ///
 /// # Errors
 /// The first line that cannot be read.
-pub fn fields(text: &str) -> Result<(Vec<KeyValue>, Place), Diagnostic> {
+pub fn fields(text: &str, conditions: &[Condition]) -> Result<(Vec<KeyValue>, Place), Diagnostic> {
+    check_merged(text)?;
     let mut pairs: Vec<KeyValue> = Vec::new();
     let mut header: Option<(Vec<Column>, char, Place)> = None;
-    let mut lists: Vec<(Vec<Node>, Place)> = Vec::new();
+    let mut lines: Vec<Line> = Vec::new();
     let mut decimals = Decimals::default();
+    let mut missing: Option<Vec<&str>> = None;
     let mut offset = 0;
     for (number, line) in (1..).zip(text.split('\n')) {
         let here = Place { line: number, column: 1, offset, length: line.len() };
         offset += line.len() + 1;
         if let Some(said) = line.trim_start().strip_prefix('#') {
-            pairs.extend(said_by(said, line, here)?);
+            match marks(said) {
+                Some(marks) => missing = Some(marks),
+                None => pairs.extend(said_by(said, line, here)?),
+            }
         } else if line.trim().is_empty() {
         } else if let Some((columns, separator, _)) = &header {
             let mut cells = cells(line, *separator, here);
@@ -48,10 +63,17 @@ pub fn fields(text: &str) -> Result<(Vec<KeyValue>, Place), Diagnostic> {
             if cells.len() != columns.len() {
                 return Err(other_count(cells.len(), columns.len(), *separator).at(here));
             }
-            for (at, ((cell, column), (items, _))) in cells.iter().zip(columns).zip(&mut lists).enumerate() {
-                decimals.see(at, cell, *separator)?;
-                items.push(value(cell, column, *separator)?);
+            let of_values = |at: &usize| !columns[*at].is_key;
+            let is_missing = |cell: &Cell| missing.iter().flatten().any(|mark| is_same(mark, cell.text));
+            if (0..cells.len()).filter(of_values).any(|at| is_missing(&cells[at])) {
+                continue;
             }
+            for at in (0..cells.len()).filter(of_values) {
+                if !is_mark(cells[at].text) {
+                    decimals.see(at, &cells[at], *separator)?;
+                }
+            }
+            lines.push(Line { cells });
         } else {
             let separator = if line.contains(';') {
                 ';'
@@ -60,18 +82,33 @@ pub fn fields(text: &str) -> Result<(Vec<KeyValue>, Place), Diagnostic> {
             } else {
                 ','
             };
-            let columns = cells(line, separator, here).into_iter().map(column).collect::<Result<Vec<_>, _>>()?;
-            lists = columns.iter().map(|column| (Vec::new(), column.name.place)).collect();
+            let columns = cells(line, separator, here)
+                .into_iter()
+                .map(|cell| column(cell, conditions))
+                .collect::<Result<Vec<_>, _>>()?;
             header = Some((columns, separator, here));
         }
     }
-    decimals.check_thousands()?;
-    let Some((columns, _, header)) = header else {
+    let Some((columns, separator, header)) = header else {
         let start = Place { line: 1, column: 1, ..Place::default() };
         return Err(Diagnostic::new("this file has no columns").at(start).help(HEADER));
     };
+    let (lines, averaged) = chosen(lines, &columns, conditions, header)?;
+    let mut lists: Vec<(Vec<Node>, Place)> =
+        columns.iter().map(|column| (Vec::with_capacity(lines.len()), column.name.place)).collect();
+    for line in &lines {
+        for ((cell, column), (items, _)) in line.cells.iter().zip(&columns).zip(&mut lists) {
+            if !column.is_key {
+                items.push(value(cell, column, separator)?);
+            }
+        }
+    }
+    decimals.check_thousands()?;
+    if averaged > 1 {
+        average(&columns, &mut lists, averaged, header)?;
+    }
     let said = pairs.len();
-    for (column, (items, place)) in columns.iter().zip(lists) {
+    for (column, (items, place)) in columns.iter().zip(lists).filter(|(column, _)| !column.is_key) {
         if pairs[..said].iter().any(|pair| pair.key == column.name.text) {
             return Err(twice(column.name.text).at(place));
         }
@@ -219,7 +256,13 @@ fn unquoted(text: &str) -> &str {
     text.strip_prefix('"').and_then(|text| text.strip_suffix('"')).unwrap_or(text)
 }
 
-fn column(cell: Cell<'_>) -> Result<Column<'_>, Diagnostic> {
+fn column<'a>(cell: Cell<'a>, conditions: &[Condition]) -> Result<Column<'a>, Diagnostic> {
+    // A number of a tooth has no unit, and neither has what a condition names.
+    let key = cell.text.split('[').next().unwrap_or_default().trim_end();
+    if key == TOOTH || conditions.iter().any(|condition| condition.column == key) {
+        let name = Cell { text: key, place: Place { length: key.len(), ..cell.place } };
+        return Ok(Column { name, unit: None, is_key: true });
+    }
     let wrong = |message: String| Diagnostic::new(message).at(cell.place);
     if cell.text.is_empty() {
         return Err(wrong("a column has no name".to_owned()).help(HEADER));
@@ -238,10 +281,10 @@ fn column(cell: Cell<'_>) -> Result<Column<'_>, Diagnostic> {
     let place = Place { length: name.len(), ..cell.place };
     let name = Cell { text: name, place };
     if unit == "-" {
-        return Ok(Column { name, unit: None });
+        return Ok(Column { name, unit: None, is_key: false });
     }
     match parse_unit(unit) {
-        Ok(_) => Ok(Column { name, unit: Some(unit) }),
+        Ok(_) => Ok(Column { name, unit: Some(unit), is_key: false }),
         Err(UnitError::Unknown(symbol)) => {
             let found = wrong(format!("unknown unit {} of the column {}", quote(&symbol), quote(name.text)));
             Err(match nearest(&symbol, symbols()) {
@@ -255,9 +298,15 @@ fn column(cell: Cell<'_>) -> Result<Column<'_>, Diagnostic> {
 
 /// What a study would say.
 fn value(cell: &Cell<'_>, column: &Column<'_>, separator: char) -> Result<Node, Diagnostic> {
-    if cell.text.is_empty() {
-        let message = format!("a value of {} is missing", quote(column.name.text));
-        return Err(Diagnostic::new(message).at(cell.place).help("leave out a line that has no value"));
+    if is_mark(cell.text) {
+        let name = quote(column.name.text);
+        let (message, mark) = match cell.text {
+            "" => (format!("a value of {name} is missing"), "\"\""),
+            mark => (format!("{} stands for a missing value of {name}", quote(mark)), mark),
+        };
+        let help =
+            format!("leave out the line, or write `# missing: {mark}` above the columns to leave out every such line");
+        return Err(Diagnostic::new(message).at(cell.place).help(help));
     }
     let comma = separator != ',' && cell.text.matches(',').count() == 1 && !cell.text.contains('.');
     let number = if comma { cell.text.replacen(',', ".", 1) } else { cell.text.to_owned() };

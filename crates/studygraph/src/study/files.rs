@@ -9,6 +9,7 @@ use std::path::{Component, Path, PathBuf};
 use super::assemble::{FILES, SET};
 use super::changes::{Added, Section};
 use super::columns;
+use super::conditions::{Condition, file_and_conditions};
 use super::document::{Content, KeyValue, Node, nothing};
 use super::words::quote;
 use super::{LoadError, read};
@@ -61,9 +62,9 @@ pub(super) fn named(root: &Node) -> Vec<(String, Place)> {
             Content::Mapping(pairs) => {
                 for pair in pairs {
                     match &pair.node.content {
-                        Content::Scalar { text, .. } if pair.key == FILE.name && is_csv(text) => {
-                            if !found.iter().any(|(name, _)| name == text) {
-                                found.push((text.clone(), pair.node.place));
+                        Content::Scalar { text, .. } if pair.key == FILE.name && is_csv(name_of(text)) => {
+                            if !found.iter().any(|(name, _)| name == name_of(text)) {
+                                found.push((name_of(text).to_owned(), pair.node.place));
                             }
                         }
                         _ => walk(&pair.node, found),
@@ -77,6 +78,11 @@ pub(super) fn named(root: &Node) -> Vec<(String, Place)> {
         walk(&stages.node, &mut found);
     }
     found
+}
+
+/// The name of a file without its conditions.
+fn name_of(text: &str) -> &str {
+    text.strip_suffix(']').and_then(|rest| rest.split_once('[')).map_or(text, |(name, _)| name)
 }
 
 fn is_csv(name: &str) -> bool {
@@ -93,12 +99,7 @@ fn pair<'n>(root: &'n Node, key: &str) -> Option<&'n KeyValue> {
 ///
 /// # Errors
 /// When one cannot be read.
-pub(super) fn attach(
-    root: &mut Node,
-    added: &mut Added,
-    set: &Node,
-    path: &Path,
-) -> Result<Vec<Attached>, LoadError> {
+pub(super) fn attach(root: &mut Node, added: &mut Added, set: &Node, path: &Path) -> Result<Vec<Attached>, LoadError> {
     let held = |name: &str| pair(root, FILES).is_some_and(|held| pair(&held.node, name).is_some());
     let missing: Vec<_> = named(set).into_iter().filter(|(name, _)| !held(name)).collect();
     if missing.is_empty() {
@@ -138,7 +139,8 @@ pub(super) fn attach(
 
 /// Where the file of this name is.
 fn beside(study: &Path, name: &str) -> Result<PathBuf, Diagnostic> {
-    let is_below = Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
+    // `./` at its beginning says the same folder.
+    let is_below = Path::new(name).components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
     if !is_below || name.contains('\\') {
         let message = format!("{} does not lie beside the study, or below", quote(name));
         return Err(Diagnostic::new(message).help("move it there, and write its path from the study on, with `/`"));
@@ -171,11 +173,12 @@ fn expand(node: &mut Node, held: &[KeyValue], whole: &str) -> Result<(), Diagnos
         Content::Mapping(pairs) => {
             let named = pairs.iter().position(|pair| pair.key == FILE.name);
             let file = named.and_then(|at| match &pairs[at].node.content {
-                Content::Scalar { text, .. } => Some((at, held.iter().find(|file| file.key == *text)?)),
+                Content::Scalar { text, .. } => Some((at, held.iter().find(|file| file.key == name_of(text))?, text)),
                 _ => None,
             });
-            if let Some((at, file)) = file {
-                let (fields, header) = said_by(file, whole)?;
+            if let Some((at, file, text)) = file {
+                let (_, conditions) = file_and_conditions(text).map_err(|wrong| wrong.at(pairs[at].node.place))?;
+                let (fields, header) = said_by(file, whole, &conditions)?;
                 READ.clone_into(&mut pairs[at].key);
                 pairs[at].node = nothing(header);
                 for field in fields {
@@ -193,17 +196,18 @@ fn expand(node: &mut Node, held: &[KeyValue], whole: &str) -> Result<(), Diagnos
 }
 
 /// The fields of a file, and the line that names its columns, with their places in the whole text.
-fn said_by(file: &KeyValue, whole: &str) -> Result<(Vec<KeyValue>, Place), Diagnostic> {
+fn said_by(file: &KeyValue, whole: &str, conditions: &[Condition]) -> Result<(Vec<KeyValue>, Place), Diagnostic> {
     let Content::Scalar { text, .. } = &file.node.content else {
         let message = format!("{} is {}; the text of a file is expected", quote(&file.key), file.node.describe());
         return Err(Diagnostic::new(message).at(file.node.place).help("write it line by line behind `|`"));
     };
     let block = Block::of(file, text, whole);
     let at = |place: Place| block.as_ref().map_or(file.node.place, |block| block.place(place));
-    let (mut fields, header) = columns::fields(text.trim_end_matches('\n')).map_err(|found| match found.place {
-        Some(place) => found.at(at(place)),
-        None => found.at(file.node.place),
-    })?;
+    let (mut fields, header) =
+        columns::fields(text.trim_end_matches('\n'), conditions).map_err(|found| match found.place {
+            Some(place) => found.at(at(place)),
+            None => found.at(file.node.place),
+        })?;
     for field in &mut fields {
         field.place = at(field.place);
         move_all(&mut field.node, &at);

@@ -10,6 +10,7 @@ mod cells;
 mod changes;
 mod characters;
 mod columns;
+mod conditions;
 pub mod cursor;
 pub mod declared;
 mod decode;

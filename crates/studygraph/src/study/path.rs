@@ -220,7 +220,8 @@ impl FieldPath {
                 At::Value(field, Shape::Map(item)) => {
                     let pairs = mapping(current).ok_or_else(|| step.nothing_below(&label))?;
                     let labelled = self.labelled(next, pairs, &label);
-                    if let (Err(_), true, [Step { word: Word::Name(new), .. }]) = (&labelled, adds, &self.steps[next..]) {
+                    if let (Err(_), true, [Step { word: Word::Name(new), .. }]) = (&labelled, adds, &self.steps[next..])
+                    {
                         pairs.push(KeyValue { key: new.clone(), place: self.place, node: nothing(self.place) });
                     }
                     let (position, steps) = labelled.or_else(|_| self.labelled(next, pairs, &label))?;

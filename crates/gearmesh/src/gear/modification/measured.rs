@@ -53,6 +53,12 @@ pub struct Measured {
     /// Up to which it is evaluated; the tip, or the other end of the face, when left out.
     #[declared(dimension = LENGTH, minimum = -10.0, maximum = 10.0, example = "15 mm")]
     pub evaluation_end: Option<f64>,
+    /// Instead of `evaluation_start`: diameter from which a trace along the profile is evaluated.
+    #[declared(dimension = LENGTH, minimum = 1e-4, maximum = 100.0, example = "53 mm")]
+    pub evaluation_start_diameter: Option<f64>,
+    /// Instead of `evaluation_end`: diameter up to which it is evaluated, such as the tip form circle's.
+    #[declared(dimension = LENGTH, minimum = 1e-4, maximum = 100.0, example = "62 mm")]
+    pub evaluation_end_diameter: Option<f64>,
     /// z: number of teeth of the gear that was measured; another gear is refused.
     #[declared(minimum = 4, maximum = 10_000, example = "19")]
     pub teeth: Option<u32>,
@@ -92,6 +98,7 @@ impl Specified for Measured {
         let depths: Vec<f64> = self.deviations.iter().map(|deviation| -deviation).collect();
         let flank_ends = [flank.root_roll, flank.tip_roll];
         let profile_ends = flank_ends.map(|roll| roll * flank.base_radius);
+        let limits = checks::limits(self, &flank)?;
         let face_ends = [-0.5 * flank.face_width, 0.5 * flank.face_width];
         let lengths = |rolls: &[f64]| rolls.iter().map(|roll| roll * flank.base_radius).collect::<Vec<_>>();
         for places in along.as_deref().map(lengths).iter().chain(&across) {
@@ -102,15 +109,15 @@ impl Specified for Measured {
                 let lengths = lengths(&rolls);
                 let depths = self.smoothing.smoothed(&lengths, &depths);
                 checks::swings([checks::profile(self).zip(Some(&lengths[..])), None], &depths)?;
-                checks::evaluation(self, &lengths)?;
-                let values = evaluated(&PROFILE, &lengths, &depths, self.range(profile_ends), profile_ends);
+                checks::evaluation(&limits, &lengths)?;
+                let values = evaluated(&PROFILE, &lengths, &depths, limits.range(profile_ends), profile_ends);
                 Arc::new(Profile(Line::new(&rolls, &depths, flank_ends, values)))
             }
             (None, Some(places)) => {
                 let depths = self.smoothing.smoothed(&places, &depths);
                 checks::swings([Some((Measured::NAMES.face_positions, &places[..])), None], &depths)?;
-                checks::evaluation(self, &places)?;
-                let values = evaluated(&HELIX, &places, &depths, self.range(face_ends), face_ends);
+                checks::evaluation(&limits, &places)?;
+                let values = evaluated(&HELIX, &places, &depths, limits.range(face_ends), face_ends);
                 Arc::new(Lead(Line::new(&places, &depths, face_ends, values)))
             }
             (Some(rolls), Some(places)) => {
@@ -118,13 +125,13 @@ impl Specified for Measured {
                 let depths = self.smoothing.smoothed_grid(&lengths, &places, &depths);
                 let across = Some((Measured::NAMES.face_positions, &places[..]));
                 checks::swings([checks::profile(self).zip(Some(&lengths[..])), across], &depths)?;
-                checks::evaluation(self, &lengths)?;
+                checks::evaluation(&limits, &lengths)?;
                 let grid = Grid::new(&rolls, &places, &depths);
                 // The trace in the middle of the face, and the one in the middle of the active flank.
                 let along: Vec<f64> = rolls.iter().map(|roll| grid.value(*roll, 0.0)).collect();
                 let middle = 0.5 * (flank.root_roll + flank.tip_roll);
                 let across: Vec<f64> = places.iter().map(|z| grid.value(middle, *z)).collect();
-                let mut values = evaluated(&PROFILE, &lengths, &along, self.range(profile_ends), profile_ends);
+                let mut values = evaluated(&PROFILE, &lengths, &along, limits.range(profile_ends), profile_ends);
                 values.extend(evaluated(&HELIX, &places, &across, face_ends, face_ends));
                 values.retain(|value| value.0 != AMOUNT);
                 values.insert(0, (AMOUNT, deepest(&depths)));
@@ -165,13 +172,6 @@ pub const HELIX: Names = [
     "helix_total_deviation",
     "helix_crowning",
 ];
-
-impl Measured {
-    /// The part of a trace that is evaluated.
-    fn range(&self, whole: [f64; 2]) -> [f64; 2] {
-        [self.evaluation_start.unwrap_or(whole[0]), self.evaluation_end.unwrap_or(whole[1])]
-    }
-}
 
 /// What a trace of depths comes to over a range, its slope over the whole of the flank; NaN where it covers nothing of the range.
 fn evaluated(

@@ -148,7 +148,7 @@ pub fn text(example: Option<&str>) -> Value {
 
 /// The name of a CSV file beside the study.
 pub fn file() -> Value {
-    let schema = json!({ "type": "string", "pattern": r"^[^/\\]+(/[^/\\]+)*\.[cC][sS][vV]$" });
+    let schema = json!({ "type": "string", "pattern": r"^[^/\\]+(/[^/\\]+)*\.[cC][sS][vV](\[[^\]]+\])?$" });
     with_example(explained(schema, "the name of a CSV file beside the study is expected"), Some(json!("trace.csv")))
 }
 

@@ -1,6 +1,7 @@
 //! CSV files as fields: what their lines say, and where what is wrong with them stands.
 
 use crate::study::columns::fields;
+use crate::study::conditions::file_and_conditions;
 use crate::study::document::{Content, Node};
 
 /// `name: value`, lists between brackets.
@@ -10,12 +11,12 @@ fn said(text: &str) -> Vec<String> {
         Content::Sequence(items) => format!("{:?}", items.iter().map(Node::describe).collect::<Vec<_>>()),
         Content::Mapping(_) => "a mapping".to_owned(),
     };
-    fields(text).unwrap().0.iter().map(|pair| format!("{}: {}", pair.key, shown(&pair.node))).collect()
+    fields(text, &[]).unwrap().0.iter().map(|pair| format!("{}: {}", pair.key, shown(&pair.node))).collect()
 }
 
 /// Line, column and what is said.
 fn refused(text: &str) -> String {
-    let found = fields(text).unwrap_err();
+    let found = fields(text, &[]).unwrap_err();
     let place = found.place.unwrap();
     format!("{}:{}: {}", place.line, place.column, found.message)
 }
@@ -38,7 +39,7 @@ fn columns_are_lists_and_first_lines_are_values() {
 
 #[test]
 fn a_list_stands_at_the_last_column_of_its_name() {
-    let (pairs, header) = fields("# one: 1\nx [mm], x [mm], y [um]\n4,5,-1\n").unwrap();
+    let (pairs, header) = fields("# one: 1\nx [mm], x [mm], y [um]\n4,5,-1\n", &[]).unwrap();
     let at = |name: &str| {
         pairs.iter().find(|pair| pair.key == name).map(|pair| (pair.node.place.line, pair.node.place.column))
     };
@@ -75,6 +76,82 @@ fn a_file_has_one_sign_before_decimals() {
     assert_eq!(refused(thousands), "3:4: the comma of `-1,570` seems to part thousands, as it is a decimal comma here");
     // Decimals of other counts, whole numbers beyond 999, and small ones among three decimals say that it does not.
     for column in ["531\n1,570\n2,5\n", "1531\n1,570\n", "0\n-1,570\n", "531\n0,570\n"] {
-        fields(&format!("x [mm];y [mm]\n{}", column.replace('\n', ";1\n"))).unwrap();
+        fields(&format!("x [mm];y [mm]\n{}", column.replace('\n', ";1\n")), &[]).unwrap();
     }
+}
+
+/// `name: value`, and lists between brackets, of the lines that meet a condition.
+fn of(text: &str, conditions: &str) -> Vec<String> {
+    let (_, conditions) = file_and_conditions(conditions).unwrap();
+    let shown = |node: &Node| match &node.content {
+        Content::Sequence(items) => items.iter().map(Node::describe).collect::<Vec<_>>().join(" "),
+        _ => node.describe(),
+    };
+    match fields(text, &conditions) {
+        Ok((pairs, _)) => pairs.iter().map(|pair| format!("{}: {}", pair.key, shown(&pair.node))).collect(),
+        Err(found) => {
+            let place = found.place.unwrap();
+            vec![format!("{}:{}: {}; {}", place.line, place.column, found.message, found.help.unwrap_or_default())]
+        }
+    }
+}
+
+#[test]
+fn marks_of_missing_values_are_named_and_left_out_on_request() {
+    for mark in
+        ["", "NaN", "nan", "-", "--", "---", "n/a", "N/A", "#N/A", "*", "***", "?", "null", "9999", "-9999", "99999.00"]
+    {
+        let text = format!("x [mm]; y [um]\n4;-1\n5;{mark}\n6;-3\n");
+        let [said] = &of(&text, "a.csv")[..] else { panic!("{mark}") };
+        let written = if mark.is_empty() { "\"\"" } else { mark };
+        let remedy = format!(
+            "leave out the line, or write `# missing: {written}` above the columns to leave out every such line"
+        );
+        assert!(said.starts_with("3:3: ") && said.ends_with(&remedy), "{mark}: {said}");
+        let asked = format!("# missing: {written}\n{text}");
+        assert_eq!(of(&asked, "a.csv"), ["x: `4 mm` `6 mm`", "y: `-1 um` `-3 um`"], "{mark}");
+    }
+    let several = "# missing: [---, NaN, 9999]\nx [mm], y [um]\n4, -1\n5, ---\n6, nan\n7, 9999.0\n8, -2\n";
+    assert_eq!(of(several, "a.csv"), ["x: `4 mm` `8 mm`", "y: `-1 um` `-2 um`"]);
+    // What is a number stays one.
+    assert_eq!(
+        of("x [mm]\n999\n9998\n-0.5\n.5\n99.99\n", "a.csv"),
+        ["x: `999 mm` `9998 mm` `-0.5 mm` `.5 mm` `99.99 mm`"]
+    );
+}
+
+#[test]
+fn one_of_several_teeth_is_chosen_or_all_are_averaged() {
+    let text = "tooth; x [mm]; y [um]\n1; 4; -1\n1; 5; -2\n6; 4; -3\n6; 5; -5\n";
+    assert_eq!(of(text, "a.csv[tooth=6]"), ["x: `4 mm` `5 mm`", "y: `-3 um` `-5 um`"]);
+    assert_eq!(of(text, "a.csv[ tooth = 1.0 ]"), ["x: `4 mm` `5 mm`", "y: `-1 um` `-2 um`"]);
+    assert_eq!(of(text, "a.csv[tooth=mean]"), ["x: `4 mm` `5 mm`", "y: `-2 um` `-3.5 um`"]);
+    // Lines of teeth may take turns, and other columns can be named too.
+    let flanks = "flank, tooth [-], x [mm]\nleft,1,4\nright,1,5\nleft,2,6\nright,2,7\n";
+    assert_eq!(of(flanks, "a.csv[tooth=2, flank=Right]"), ["x: `7 mm`"]);
+    assert_eq!(of("tooth, x [mm]\n3,4\n3,5\n", "a.csv"), ["x: `4 mm` `5 mm`"]);
+    for (text, name, expected) in [
+        (
+            text,
+            "a.csv",
+            "1:1: this file has several teeth: `1`, `6`; name one behind the file, `\"NAME.csv[tooth=1]\"`",
+        ),
+        (text, "a.csv[tooth=7]", "1:1: no line has `7` in the column `tooth`; there are `1`, `6`"),
+        (text, "a.csv[gear=7]", "1:1: there is no column `gear`"),
+        ("tooth, x [mm]\n1,4\n1,5\n2,4\n", "a.csv[tooth=mean]", "1:1: there are 2 lines of `1` and 1 of `2`"),
+        ("tooth, x [mm]\n1,4\n1,5\n2,6\n2,9\n", "a.csv[tooth=mean]", "1:1: no column is the same for all"),
+        (flanks, "a.csv[tooth=1]", "1:1: the column `flank` has no unit"),
+    ] {
+        let said = of(text, name);
+        assert!(said[0].starts_with(expected), "{name}: {said:?}");
+    }
+    for wrong in ["a.csv[tooth]", "a.csv[]", "a.csv[=3]", "a.csv[tooth=]"] {
+        assert!(file_and_conditions(wrong).is_err(), "{wrong}");
+    }
+}
+
+#[test]
+fn marks_of_a_merge_are_named() {
+    let text = "x [mm]\n<<<<<<< HEAD\n4\n=======\n5\n>>>>>>> other\n";
+    assert_eq!(refused(text), "2:1: a merge left both versions from line 2 to 6; keep one");
 }

@@ -318,9 +318,7 @@ fn anything_can_be_set_whatever_the_end_of_the_text() {
 /// A tree as JSON; what is a number or nothing there stays one.
 fn value(node: &crate::study::document::Node) -> serde_json::Value {
     match &node.content {
-        Content::Scalar { text, quoted: false } => {
-            serde_json::from_str(text).unwrap_or_else(|_| text.as_str().into())
-        }
+        Content::Scalar { text, quoted: false } => serde_json::from_str(text).unwrap_or_else(|_| text.as_str().into()),
         Content::Scalar { text, .. } => text.as_str().into(),
         Content::Sequence(items) => items.iter().map(value).collect(),
         Content::Mapping(pairs) => {
@@ -333,12 +331,17 @@ fn value(node: &crate::study::document::Node) -> serde_json::Value {
 fn a_label_that_is_not_there_is_added() {
     let study = set("designs.designs.new=[tip_relief: { amount: 9 um }]");
     let labels: Vec<&str> = record(&study, "designs").map("designs").iter().map(|(name, _)| name.as_str()).collect();
-    assert!(labels.ends_with(&["new"]) && labels.len() == 1 + record(&load(VALID).unwrap(), "designs").map("designs").len());
+    assert!(
+        labels.ends_with(&["new"]) && labels.len() == 1 + record(&load(VALID).unwrap(), "designs").map("designs").len()
+    );
     assert_eq!(record(&set("designs.designs.new=[]"), "designs").map("designs").len(), labels.len());
     // What it holds must fit, and nothing is below what is not there.
     for (set, expected) in [
         ("designs.designs.new=3", "--set designs.designs.new=3:1:21: "),
-        ("designs.designs.new[0].tip_relief.amount=3 um", "--set designs.designs.new[0].tip_relief.amount=3 um:1:17: there is no `new`"),
+        (
+            "designs.designs.new[0].tip_relief.amount=3 um",
+            "--set designs.designs.new[0].tip_relief.amount=3 um:1:17: there is no `new`",
+        ),
         ("designs.designs.bad name=[]", "--set designs.designs.bad name=[]:1:20: "),
     ] {
         let message = with(VALID, &[set], None).err().unwrap();

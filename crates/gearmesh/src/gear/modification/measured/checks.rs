@@ -83,13 +83,35 @@ pub(super) fn consistent(stated: &Measured) -> Result<(), Diagnostic> {
                 .help("leave the point out, or measure the trace again"));
         }
     }
-    if let (Some(start), Some(end)) = (stated.evaluation_start, stated.evaluation_end)
-        && start >= end
-    {
-        let message = format!("the evaluation ends at {} and starts at {}", millimetres(end), millimetres(start));
-        return Err(Diagnostic::new(message).of(Measured::NAMES.evaluation_end));
+    let names = Measured::NAMES;
+    for (name, place, of_diameter, diameter) in [
+        (
+            names.evaluation_start,
+            stated.evaluation_start,
+            names.evaluation_start_diameter,
+            stated.evaluation_start_diameter,
+        ),
+        (names.evaluation_end, stated.evaluation_end, names.evaluation_end_diameter, stated.evaluation_end_diameter),
+    ] {
+        if diameter.is_none() {
+            continue;
+        }
+        if place.is_some() {
+            let message = format!("`{name}` and `{of_diameter}` say the same limit of the evaluation");
+            return Err(Diagnostic::new(message).of(of_diameter).help("keep one of them"));
+        }
+        if given.is_empty() {
+            let message = format!("`{of_diameter}` is of a trace along the profile, and this one goes across the face");
+            return Err(Diagnostic::new(message).of(of_diameter).help(format!("state z as `{name}`")));
+        }
     }
-    Ok(())
+    match (stated.evaluation_start, stated.evaluation_end) {
+        (Some(start), Some(end)) if start >= end => Err(backwards(names.evaluation_end, start, end)),
+        _ => match (stated.evaluation_start_diameter, stated.evaluation_end_diameter) {
+            (Some(start), Some(end)) if start >= end => Err(backwards(names.evaluation_end_diameter, start, end)),
+            _ => Ok(()),
+        },
+    }
 }
 
 /// The lines of a trace or a grid: what its places are called, the places, and which deviations are theirs. Of a grid those along the profile
@@ -276,21 +298,71 @@ pub(super) fn face_positions(stated: &Measured, flank: &Flank) -> Result<Option<
     Ok(Some(places.clone()))
 }
 
-/// Refuses an evaluation that is stated to begin or end beside the trace, or leaves nothing of it.
-pub(super) fn evaluation(stated: &Measured, places: &[f64]) -> Result<(), Diagnostic> {
+/// Where the evaluation of a trace starts and ends: the name of the field that says it, and the roll length or z \[m\].
+pub(super) struct Limits([Option<(&'static str, f64)>; 2]);
+
+impl Limits {
+    /// The part of a trace that is evaluated; what is not stated is an end of `whole`.
+    pub(super) fn range(&self, whole: [f64; 2]) -> [f64; 2] {
+        let at = |end: usize| self.0[end].map_or(whole[end], |(_, place)| place);
+        [at(0), at(1)]
+    }
+}
+
+/// The limits of the evaluation; those that are diameters as roll lengths of this gear.
+pub(super) fn limits(stated: &Measured, flank: &Flank) -> Result<Limits, Diagnostic> {
     let names = Measured::NAMES;
+    let both = [
+        (
+            names.evaluation_start,
+            stated.evaluation_start,
+            names.evaluation_start_diameter,
+            stated.evaluation_start_diameter,
+        ),
+        (names.evaluation_end, stated.evaluation_end, names.evaluation_end_diameter, stated.evaluation_end_diameter),
+    ];
+    let mut limits = [None; 2];
+    for (limit, (name, place, of_diameter, diameter)) in limits.iter_mut().zip(both) {
+        *limit = match (place, diameter) {
+            (Some(place), _) => Some((name, place)),
+            (None, Some(diameter)) => match flank.roll_at_diameter(diameter) {
+                Some(roll) => Some((of_diameter, roll * flank.base_radius)),
+                None => {
+                    let [diameter, base] = [diameter, 2.0 * flank.base_radius].map(millimetres);
+                    let message = format!("`{of_diameter}` is {diameter}, inside the base circle of this gear, {base}");
+                    return Err(of_another_gear(message, of_diameter));
+                }
+            },
+            (None, None) => None,
+        };
+    }
+    match limits {
+        [Some((_, start)), Some((name, end))] if start >= end => Err(backwards(name, start, end)),
+        limits => Ok(Limits(limits)),
+    }
+}
+
+fn backwards(name: &'static str, start: f64, end: f64) -> Diagnostic {
+    let message = format!("the evaluation ends at {} and starts at {}", millimetres(end), millimetres(start));
+    Diagnostic::new(message).of(name)
+}
+
+/// Refuses an evaluation that is stated to begin or end beside the trace, or leaves nothing of it.
+pub(super) fn evaluation(Limits(limits): &Limits, places: &[f64]) -> Result<(), Diagnostic> {
     let (first, last) = (places[0], places[places.len() - 1]);
     let slack = BEYOND * (last - first);
     let trace = format!("the trace goes from {} to {}", millimetres(first), millimetres(last));
-    let given = [(names.evaluation_start, stated.evaluation_start), (names.evaluation_end, stated.evaluation_end)];
-    for (name, place) in given.into_iter().filter_map(|(name, place)| Some((name, place?))) {
-        if place < first - slack || place > last + slack {
-            return Err(Diagnostic::new(format!("`{name}` is {}, and {trace}", millimetres(place))).of(name));
+    for (name, place) in limits.iter().flatten() {
+        if *place < first - slack || *place > last + slack {
+            let is_diameter = [Measured::NAMES.evaluation_start_diameter, Measured::NAMES.evaluation_end_diameter];
+            let what = if is_diameter.contains(name) { "at the roll length" } else { "" };
+            let message = format!("`{name}` is {what} {}, and {trace}", millimetres(*place)).replace("  ", " ");
+            return Err(Diagnostic::new(message).of(name));
         }
     }
-    let from = stated.evaluation_start.unwrap_or(first).max(first);
-    match given.into_iter().find(|(_, place)| place.is_some()) {
-        Some((name, _)) if from >= stated.evaluation_end.unwrap_or(last).min(last) => {
+    let [from, to] = Limits(*limits).range([first, last]);
+    match limits.iter().flatten().next() {
+        Some((name, _)) if from.max(first) >= to.min(last) => {
             Err(Diagnostic::new(format!("the evaluation leaves nothing of the trace: {trace}")).of(name))
         }
         _ => Ok(()),

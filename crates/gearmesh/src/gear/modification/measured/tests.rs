@@ -331,3 +331,34 @@ fn a_trace_is_evaluated_and_may_be_told_by_diameters() {
         assert!((value("profile_evaluation_end") - flank.base_radius * flank.tip_roll).abs() < 1e-12);
     }
 }
+
+/// d = 2 √(r_b² + L_y²): limits as diameters are those as roll lengths; across the face there are none.
+#[test]
+fn limits_of_the_evaluation_may_be_diameters() {
+    let pair = pair();
+    for (_, side) in SIDES {
+        let flank = Flank::new(&pair, side);
+        let measured = profile(&pair, side, 200, |roll| -1e-5 * roll * roll);
+        let [start, end] =
+            [0.2, 0.9].map(|share| flank.base_radius * (flank.root_roll + share * (flank.tip_roll - flank.root_roll)));
+        let diameter = |length: f64| 2.0 * flank.base_radius.hypot(length);
+        let by_length = Measured { evaluation_start: Some(start), evaluation_end: Some(end), ..measured.clone() };
+        let by_diameter = Measured {
+            evaluation_start_diameter: Some(diameter(start)),
+            evaluation_end_diameter: Some(diameter(end)),
+            ..measured.clone()
+        };
+        let mixed = Measured { evaluation_start_diameter: None, evaluation_start: Some(start), ..by_diameter.clone() };
+        let values = |measured: &Measured| measured.on(&pair, side).unwrap().resolved();
+        for other in [&by_diameter, &mixed] {
+            for (one, other) in values(&by_length).iter().zip(values(other)) {
+                assert!(one.0 == other.0 && (one.1 - other.1).abs() <= 1e-12, "{one:?} {other:?}");
+            }
+        }
+        let inside = Measured { evaluation_start_diameter: Some(1.9 * flank.base_radius), ..measured };
+        let refused = inside.on(&pair, side).unwrap_err().message;
+        assert!(refused.contains("inside the base circle of this gear"), "{refused}");
+        let across = Measured { evaluation_end_diameter: Some(0.06), ..lead(&pair, side, 50, |_| 0.0) };
+        assert!(across.check().unwrap_err().message.contains("of a trace along the profile"));
+    }
+}

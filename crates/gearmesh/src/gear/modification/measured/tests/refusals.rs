@@ -66,6 +66,14 @@ fn what_is_no_trace_is_refused() {
         |stated| (stated.evaluation_start, stated.evaluation_end) = (Some(9e-3), Some(8e-3)),
         "the evaluation ends at 8.000000 mm and starts at 9.000000 mm",
     );
+    refused(
+        |stated| (stated.evaluation_start_diameter, stated.evaluation_end_diameter) = (Some(62e-3), Some(58e-3)),
+        "the evaluation ends at 58.000000 mm and starts at 62.000000 mm",
+    );
+    refused(
+        |stated| (stated.evaluation_end, stated.evaluation_end_diameter) = (Some(9e-3), Some(60e-3)),
+        "`evaluation_end` and `evaluation_end_diameter` say the same limit of the evaluation",
+    );
 }
 
 /// A probe falls off the tip and lands on the root, touches dirt twice, or a few times: none hides another.

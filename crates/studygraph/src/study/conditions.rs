@@ -1,0 +1,199 @@
+//! Which lines of a CSV file count: of several teeth one, or their average; and none with a mark of a missing value.
+//!
+//! `NAME.csv[tooth=3]` names the lines with 3 in the column `tooth`, `NAME.csv[tooth=mean]` the average of all teeth. A line `# missing: ---`
+//! in the file leaves out every line with that mark. Must not know: fields.
+
+use super::columns::{Cell, Column, Line};
+use super::document::{Content, Node};
+use super::words::quote;
+use declare::error::{Diagnostic, Place};
+
+/// The column of files of several teeth.
+pub const TOOTH: &str = "tooth";
+/// The value of a condition that stands for the average of all.
+const MEAN: &str = "mean";
+/// Name of the line that says which marks stand for missing values.
+const MISSING: &str = "missing";
+/// Marks of missing values that are words; those without digits and letters are marks too.
+const MARKS: [&str; 9] = ["nan", "-nan", "n/a", "#n/a", "na", "null", "none", "nil", "missing"];
+/// So many nines and nothing else are a mark, not a value.
+const NINES: usize = 4;
+/// How much of the range of a column its numbers may differ between teeth at places that are the same.
+const SAME_PLACE: f64 = 1e-3;
+/// Most values in a message.
+const MOST_NAMED: usize = 10;
+
+/// A column, and the value that it must have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Condition {
+    pub column: String,
+    pub value: String,
+}
+
+/// The name of a file, and which of its lines are meant.
+///
+/// # Errors
+/// When what stands in brackets is no condition.
+pub fn file_and_conditions(text: &str) -> Result<(&str, Vec<Condition>), Diagnostic> {
+    let Some((name, inside)) = text.strip_suffix(']').and_then(|rest| rest.split_once('[')) else {
+        return Ok((text, Vec::new()));
+    };
+    let condition = |part: &str| {
+        let (column, value) = part.split_once('=')?;
+        let (column, value) = (column.trim().to_owned(), value.trim().to_owned());
+        (!column.is_empty() && !value.is_empty()).then_some(Condition { column, value })
+    };
+    let conditions: Option<Vec<Condition>> = inside.split(',').map(condition).collect();
+    match conditions {
+        Some(conditions) => Ok((name, conditions)),
+        None => {
+            let message = format!("{} is not a condition on the lines of a file", quote(&format!("[{inside}]")));
+            Err(Diagnostic::new(message).help("write `NAME.csv[tooth=3]`, or `NAME.csv[tooth=mean]` for the average"))
+        }
+    }
+}
+
+/// The lines that meet all conditions, tooth by tooth where their average is wanted, and of how many teeth that is.
+pub(super) fn chosen<'a>(
+    mut lines: Vec<Line<'a>>,
+    columns: &[Column],
+    conditions: &[Condition],
+    header: Place,
+) -> Result<(Vec<Line<'a>>, usize), Diagnostic> {
+    let mut averaged = None;
+    for condition in conditions {
+        let name = &condition.column;
+        let Some(at) = columns.iter().position(|column| column.name.text == name) else {
+            let message =
+                format!("there is no column {}, and the study names {}", quote(name), quote(&condition.value));
+            return Err(Diagnostic::new(message)
+                .at(header)
+                .help("leave out the condition behind the name of the file"));
+        };
+        if condition.value == MEAN {
+            averaged = Some(at);
+            continue;
+        }
+        let values = values(&lines, at);
+        lines.retain(|line| is_same(line.cells[at].text, &condition.value));
+        if lines.is_empty() {
+            let message = format!("no line has {} in the column {}", quote(&condition.value), quote(name));
+            let help = format!("there are {}", listed(&values));
+            return Err(Diagnostic::new(message).at(columns[at].name.place).help(help));
+        }
+    }
+    if let Some(at) = averaged {
+        let values = values(&lines, at);
+        let groups: Vec<Vec<usize>> = values
+            .iter()
+            .map(|value| (0..lines.len()).filter(|line| is_same(lines[*line].cells[at].text, value)).collect())
+            .collect();
+        if let Some((other, group)) = values.iter().zip(&groups).find(|(_, group)| group.len() != groups[0].len()) {
+            let (first, count) = (quote(values[0]), groups[0].len());
+            let message = format!("there are {count} lines of {first} and {} of {}", group.len(), quote(other));
+            let help = "an average needs as many of each: name one";
+            return Err(Diagnostic::new(message).at(columns[at].name.place).help(help));
+        }
+        let order: Vec<usize> = groups.concat();
+        let mut taken: Vec<Option<Line>> = lines.into_iter().map(Some).collect();
+        return Ok((order.iter().filter_map(|line| taken[*line].take()).collect(), groups.len()));
+    }
+    for (at, column) in columns.iter().enumerate().filter(|(_, column)| column.name.text == TOOTH && column.is_key) {
+        let values = values(&lines, at);
+        if values.len() > 1 && !conditions.iter().any(|condition| condition.column == TOOTH) {
+            let message = format!("this file has several teeth: {}", listed(&values));
+            let help = format!(
+                "name one behind the file, `\"NAME.csv[tooth={}]\"`, or their average, `\"NAME.csv[tooth=mean]\"`",
+                values[0]
+            );
+            return Err(Diagnostic::new(message).at(column.name.place).help(help));
+        }
+    }
+    Ok((lines, 1))
+}
+
+/// The values of a column, each once, in the order of the lines.
+fn values<'a>(lines: &[Line<'a>], at: usize) -> Vec<&'a str> {
+    let mut found: Vec<&str> = Vec::new();
+    for line in lines {
+        let Cell { text, .. } = line.cells[at];
+        if !found.iter().any(|other| is_same(other, text)) {
+            found.push(text);
+        }
+    }
+    found
+}
+
+fn listed(values: &[&str]) -> String {
+    let shown: Vec<String> = values.iter().take(MOST_NAMED).map(|value| quote(value)).collect();
+    shown.join(", ") + if values.len() > MOST_NAMED { ", …" } else { "" }
+}
+
+/// Replaces lists of so many teeth by their average, place by place.
+pub(super) fn average(
+    columns: &[Column],
+    lists: &mut [(Vec<Node>, Place)],
+    teeth: usize,
+    header: Place,
+) -> Result<(), Diagnostic> {
+    let mut is_placed = false;
+    for ((items, _), column) in lists.iter_mut().zip(columns).filter(|(_, column)| !column.is_key) {
+        let numbers: Option<Vec<f64>> = items.iter().map(number).collect();
+        let Some(numbers) = numbers.filter(|numbers| numbers.iter().all(|number| number.is_finite())) else {
+            let message = format!("the column {} has no average: not all of it are numbers", quote(column.name.text));
+            return Err(Diagnostic::new(message).at(column.name.place));
+        };
+        let count = numbers.len() / teeth;
+        let of = |point: usize| (0..teeth).map(move |tooth| tooth * count + point);
+        let (least, largest) =
+            numbers.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(*value), b.max(*value)));
+        let is_same_place =
+            |point: usize| of(point).all(|at| (numbers[at] - numbers[point]).abs() <= SAME_PLACE * (largest - least));
+        is_placed |= (0..count).all(is_same_place);
+        for point in 0..count {
+            #[allow(clippy::cast_precision_loss)] // no file has so many teeth
+            let mean = of(point).map(|at| numbers[at]).sum::<f64>() / teeth as f64;
+            let is_one = of(point).all(|at| numbers[at].to_bits() == numbers[point].to_bits());
+            if let (Content::Scalar { text, .. }, false) = (&mut items[point].content, is_one) {
+                let unit = text.split_once(' ').map_or(String::new(), |(_, unit)| format!(" {unit}"));
+                *text = format!("{mean}{unit}");
+            }
+        }
+        items.truncate(count);
+    }
+    if is_placed {
+        return Ok(());
+    }
+    let help = "an average needs the same places for all of them: name one";
+    Err(Diagnostic::new("no column is the same for all that are averaged").at(header).help(help))
+}
+
+/// The number of a value, without its unit.
+fn number(node: &Node) -> Option<f64> {
+    let Content::Scalar { text, .. } = &node.content else { return None };
+    text.split(' ').next()?.parse().ok()
+}
+
+/// Whether two cells say the same: as texts, whatever their letters, or as numbers.
+pub(super) fn is_same(one: &str, other: &str) -> bool {
+    let both = one.parse::<f64>().ok().zip(other.parse::<f64>().ok());
+    one.eq_ignore_ascii_case(other) || both.is_some_and(|(one, other)| one.total_cmp(&other).is_eq())
+}
+
+/// Whether a cell is a mark that programs write for what was not measured.
+pub(super) fn is_mark(text: &str) -> bool {
+    let has_none = !text.chars().any(char::is_alphanumeric);
+    let whole = text.trim_start_matches(['-', '+']);
+    let whole =
+        whole.split_once(['.', ',']).filter(|(_, rest)| rest.bytes().all(|byte| byte == b'0')).map_or(whole, |it| it.0);
+    let is_nines = whole.len() >= NINES && whole.bytes().all(|byte| byte == b'9');
+    has_none || is_nines || MARKS.iter().any(|mark| text.eq_ignore_ascii_case(mark))
+}
+
+/// The marks that a line `# missing: …` says, parted by commas.
+pub(super) fn marks(said: &str) -> Option<Vec<&str>> {
+    let (_, list) = said.split_once(':').filter(|(name, _)| name.trim() == MISSING)?;
+    let list = list.trim();
+    let list = list.strip_prefix('[').and_then(|list| list.strip_suffix(']')).unwrap_or(list);
+    Some(list.split(',').map(|mark| mark.trim().trim_matches(['"', '\''])).collect())
+}
