@@ -12,8 +12,8 @@ use miette::{
     SourceCode, SourceSpan, SpanContents,
 };
 
-use super::progress::{is_hidden, plain};
 use declare::error::Diagnostic;
+use declare::text::{is_invisible, visible};
 use studygraph::study::LoadError;
 
 /// Writes the message to standard error.
@@ -23,29 +23,29 @@ pub fn invalid_study(error: &LoadError) {
     let _ = if stderr.is_terminal() {
         writeln!(stderr, "{}", framed(error))
     } else {
-        writeln!(stderr, "{}", plain(&error.to_string()))
+        writeln!(stderr, "{}", visible(&error.to_string()))
     };
 }
 
 fn framed(error: &LoadError) -> String {
     let one =
-        |found| framed_one(&error.path, &error.text, found).unwrap_or_else(|| plain(&error.to_string()).into_owned());
+        |found| framed_one(&error.path, &error.text, found).unwrap_or_else(|| visible(&error.to_string()).into_owned());
     let told: String = error.told().map(one).collect();
     told + &error.more().map_or_else(String::new, |more| more + "\n")
 }
 
 /// None where it cannot be drawn.
 fn framed_one(path: &Path, text: &str, diagnostic: &Diagnostic) -> Option<String> {
-    let mut drawn = MietteDiagnostic::new(plain(&diagnostic.message));
+    let mut drawn = MietteDiagnostic::new(visible(&diagnostic.message));
     if let Some(help) = &diagnostic.help {
-        drawn = drawn.with_help(plain(help));
+        drawn = drawn.with_help(visible(help));
     }
     let place = diagnostic.place.map(|place| place.offset..place.offset + place.length.max(1));
     let (shown, place, cut) = shortened(&masked(text), place.as_ref());
     if let Some(place) = place {
         drawn = drawn.with_label(LabeledSpan::underline(place));
     }
-    let source = Shown { source: NamedSource::new(plain(&path.display().to_string()), shown), cut };
+    let source = Shown { source: NamedSource::new(visible(&path.display().to_string()), shown), cut };
     let report = Report::new(drawn).with_source_code(source);
     let mut text = String::new();
     let handler = GraphicalReportHandler::new().with_links(false);
@@ -119,11 +119,11 @@ fn shortened(text: &str, place: Option<&Range<usize>>) -> (String, Option<Range<
     (shown, now, cut)
 }
 
-/// The text with a mark for every byte that would steer the terminal, so that places in it stay.
+/// The text with a mark for every byte of what cannot be seen or would steer the terminal, so that places in it stay.
 fn masked(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
-        if is_hidden(c) && c != '\r' {
+        if is_invisible(c) && !matches!(c, '\n' | '\r' | '\t') {
             shown.extend(std::iter::repeat_n('?', c.len_utf8()));
         } else {
             shown.push(c);

@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 use console::Term;
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
+use declare::text::visible;
 use studygraph::runner::events::{Event, Observer};
 
 /// Watches one study.
@@ -163,8 +164,8 @@ impl Watcher {
         }
         match &self.bars {
             // Above the bars; when the terminal is gone there is nobody to tell.
-            Some(bars) => drop(bars.println(between_words(&plain(text), Term::stderr().size().1.into()))),
-            None => tell(&format!("{text}\n")),
+            Some(bars) => drop(bars.println(between_words(&visible(text), Term::stderr().size().1.into()))),
+            None => tell(&format!("{}\n", visible(text))),
         }
     }
 
@@ -275,7 +276,7 @@ pub fn aside(bars: Option<&MultiProgress>, text: &str) {
 
 /// A line on standard error; when it cannot be written (a full disk, a reader that is gone) there is nobody left to tell.
 pub fn complain(text: &str) {
-    let _ = writeln!(std::io::stderr(), "{}", plain(text));
+    let _ = writeln!(std::io::stderr(), "{}", visible(text));
 }
 
 /// What a lock says, which may be waited for.
@@ -302,7 +303,7 @@ pub fn plain(text: &str) -> Cow<'_, str> {
 }
 
 /// Control characters but line ends and tabs, and those that turn the direction of writing round.
-pub fn is_hidden(c: char) -> bool {
+fn is_hidden(c: char) -> bool {
     let turns = matches!(c, '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     turns || (c.is_control() && c != '\n' && c != '\t')
 }

@@ -6,6 +6,7 @@ use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle
 
 use super::model::{Comparison, Difference, StageDiff, TableDiff};
 use super::words;
+use declare::text::visible;
 
 /// Of the worst rows, so many: every table has some.
 const SHOWN: usize = 3;
@@ -32,6 +33,10 @@ pub fn text(comparison: &Comparison, width: u16) -> String {
             page.wrap("      ", &format!("{}.{}: {}", flip.study, flip.stage, words::numbers(flip)));
         }
     }
+    if comparison.studies.is_empty() {
+        page.blank();
+        comparison.problems.iter().for_each(|problem| page.wrap("  ! ", problem));
+    }
     for study in &comparison.studies {
         page.blank();
         page.wrap("", &format!("{} {}: {}", study.state.sign(), study.name, words::sum(study)));
@@ -51,7 +56,7 @@ pub fn text(comparison: &Comparison, width: u16) -> String {
     }
     page.blank();
     page.wrap("", &words::verdict(comparison));
-    page.text
+    visible(&page.text).into_owned()
 }
 
 struct Page {

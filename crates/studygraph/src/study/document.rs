@@ -154,6 +154,7 @@ pub fn parse(text: &str) -> Result<Option<Node>, Diagnostic> {
         flow_nesting_limit: DEEPEST,
         block_nesting_limit: DEEPEST,
     };
+    characters::check_merged(text)?;
     characters::check(text)?;
     let mut tree = Tree::new(text);
     for event in Parser::new_from_str_with_options(text, options) {
@@ -415,6 +416,10 @@ fn new_key(node: Node, lines: &mut BTreeMap<String, usize>, whole: &str) -> Resu
     }
     if let Some(line) = lines.insert(text.clone(), node.place.line) {
         let message = format!("{} stands here a second time", quote(&text));
+        if text == "<<" && !quoted {
+            let help = format!("the first is in line {line}; one `<<` merges several mappings: `<<: [*one, *other]`");
+            return Err(Diagnostic::new(message).at(node.place).help(help));
+        }
         let cause = structure::second(whole, line, node.place).unwrap_or_else(|| "keep one of them".to_owned());
         return Err(Diagnostic::new(message).at(node.place).help(format!("the first is in line {line}; {cause}")));
     }

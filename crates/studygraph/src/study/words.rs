@@ -4,6 +4,7 @@
 
 use declare::error::Diagnostic;
 use declare::parameter::{Field, Presence, Shape};
+use declare::text::{code_point, is_invisible};
 use declare::units::{Dimension, RATIO, in_unit, parse_unit, split_quantity};
 
 /// Characters of a user's text that a message repeats.
@@ -12,7 +13,7 @@ const LONGEST_QUOTE: usize = 60;
 /// Names that a message lists.
 const MOST_NAMES: usize = 30;
 
-/// The text in backticks, on one line, cut when long.
+/// The text in backticks, on one line, cut when long; an invisible character by its number.
 pub fn quote(text: &str) -> String {
     let mut shown = String::new();
     for (at, character) in text.chars().enumerate() {
@@ -20,8 +21,10 @@ pub fn quote(text: &str) -> String {
             shown.push('…');
             break;
         }
-        if character.is_control() {
+        if matches!(character, '\n' | '\r' | '\t') {
             shown.extend(character.escape_default());
+        } else if is_invisible(character) {
+            shown.push_str(&code_point(character));
         } else {
             shown.push(character);
         }
