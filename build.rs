@@ -9,6 +9,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs, io};
 
+// The repository around the sources, whatever hook or alias builds them.
+#[path = "crates/studygraph/src/git.rs"]
+#[allow(dead_code)]
+mod git;
+
 /// Where everything is that the tables of any stage may depend on; beside it the files of `src/stage` that belong to no
 /// single kind.
 const SHARED: [&str; 5] = [
@@ -75,8 +80,8 @@ fn main() -> io::Result<()> {
 /// A commit alone builds nothing anew: the program says what it was built from, and its sources are the same.
 fn commit() -> Option<(String, bool)> {
     let git = |words: &[&str]| {
-        let output = Command::new("git").args(words).output().ok()?;
-        output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+        let answer = git::ask(Path::new("."), words).ok()?;
+        Some(String::from_utf8_lossy(&answer).trim().to_owned())
     };
     // The folder of a dependency may lie in the repository of somebody else.
     git(&["ls-files", "--error-unmatch", "Cargo.toml", "build.rs"])?;

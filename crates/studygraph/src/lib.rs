@@ -5,6 +5,7 @@
 
 pub mod about;
 pub mod diff;
+pub mod git;
 pub mod history;
 pub mod page;
 pub mod program;

@@ -7,15 +7,18 @@ use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Component, Path, PathBuf};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 use std::sync::{Mutex, PoisonError};
 
+use crate::git::{self, ask};
 use declare::error::nearest;
 
-/// The work tree that holds a folder.
+/// The repository that holds a folder.
 #[derive(Clone, Debug)]
 pub struct Repository {
+    /// The top of the work tree; of a bare repository the folder that stands for it.
     top: PathBuf,
+    is_bare: bool,
     /// A link, and the folder that the last commit has in its place.
     link: Option<(PathBuf, PathBuf)>,
 }
@@ -35,23 +38,6 @@ impl Commit {
         let short: String = self.id.chars().take(7).collect();
         if self.id.starts_with(&self.word) { short } else { format!("{} ({short})", self.word) }
     }
-}
-
-fn git(folder: &Path) -> Command {
-    let mut command = Command::new("git");
-    command.arg("-C").arg(folder).env("LC_ALL", "C");
-    command
-}
-
-/// Standard output of a command that succeeds, or the first line of what it says.
-fn ask<S: AsRef<OsStr>>(folder: &Path, words: &[S]) -> Result<Vec<u8>, String> {
-    let output = git(folder).args(words).output().map_err(|error| format!("`git` cannot be started: {error}"))?;
-    if output.status.success() {
-        return Ok(output.stdout);
-    }
-    let said = String::from_utf8_lossy(&output.stderr);
-    let first = said.lines().find(|line| !line.trim().is_empty()).unwrap_or("it gave no reason");
-    Err(first.trim_start_matches("fatal: ").to_owned())
 }
 
 impl Repository {
@@ -81,9 +67,14 @@ impl Repository {
     }
 
     fn top(folder: &Path) -> Result<Self, String> {
-        let top = ask(folder, &["rev-parse", "--show-toplevel"])?;
-        let text = String::from_utf8_lossy(&top);
-        Ok(Self { top: PathBuf::from(text.trim_end_matches(['\n', '\r'])), link: None })
+        let path = |answer: Vec<u8>| PathBuf::from(String::from_utf8_lossy(&answer).trim_end_matches(['\n', '\r']));
+        match ask(folder, &["rev-parse", "--show-toplevel"]) {
+            Err(problem) if problem.contains(git::NO_WORK_TREE) => {
+                let own = path(ask(folder, &["rev-parse", "--absolute-git-dir"])?);
+                Ok(Self { top: bare_top(folder, own)?, is_bare: true, link: None })
+            }
+            top => Ok(Self { top: path(top?), is_bare: false, link: None }),
+        }
     }
 
     fn around_link(path: &Path) -> Option<Self> {
@@ -125,23 +116,71 @@ impl Repository {
         if inside.components().any(|part| part == Component::ParentDir) { Err(outside()) } else { Ok(inside) }
     }
 
+    /// Whether it has no work tree: its commits are all that there is.
+    #[must_use]
+    pub fn is_bare(&self) -> bool {
+        self.is_bare
+    }
+
     /// Finds a commit.
     ///
     /// # Errors
-    /// When there is none of this name: with the nearest branch or tag.
+    /// When there is none of this name: with [`Repository::help`].
     pub fn commit(&self, word: &str) -> Result<Commit, String> {
-        let wanted = format!("{word}^{{commit}}");
-        let words = ["rev-parse", "--verify", "--quiet", "--end-of-options", &wanted];
-        if let Ok(found) = ask(&self.top, &words) {
-            return Ok(Commit { word: word.to_owned(), id: String::from_utf8_lossy(&found).trim().to_owned() });
+        if let Some(found) = self.find(word) {
+            return Ok(found);
         }
-        let names = self.names();
-        if names.is_empty() && ask(&self.top, &["rev-parse", "--verify", "--quiet", "HEAD"]).is_err() {
+        if self.find("HEAD").is_none() && self.names().is_empty() {
             return Err(format!("there is no revision `{word}`: this repository has no commit yet"));
         }
-        let near = nearest(word, names.iter().map(String::as_str));
-        let help = near.map_or_else(|| shallow(&self.top), |near| format!("; did you mean `{near}`?"));
-        Err(format!("there is no revision `{word}`{help}"))
+        Err(format!("there is no revision `{word}`{}", self.help(word, word, &[])))
+    }
+
+    fn find(&self, word: &str) -> Option<Commit> {
+        let wanted = format!("{word}^{{commit}}");
+        let found = ask(&self.top, &["rev-parse", "--verify", "--quiet", "--end-of-options", &wanted]).ok()?;
+        Some(Commit { word: word.to_owned(), id: String::from_utf8_lossy(&found).trim().to_owned() })
+    }
+
+    /// The two commits of `A..B`, or of `A...B`: the common ancestor of both and `B`, as in `git diff`. `HEAD` stands for a side
+    /// without a name. Nothing for a word that is not a range.
+    ///
+    /// # Errors
+    /// When there is no such commit, or no common ancestor.
+    pub fn range(&self, word: &str) -> Result<Option<[Commit; 2]>, String> {
+        let Some((before, after, from_ancestor)) = ends(word) else { return Ok(None) };
+        let commit = |end: &str| self.commit(if end.is_empty() { "HEAD" } else { end });
+        let (before, after) = (commit(before)?, commit(after)?);
+        if !from_ancestor {
+            return Ok(Some([before, after]));
+        }
+        let (one, other) = (&before.word, &after.word);
+        let none = |_| format!("`{one}` and `{other}` have no common ancestor{}", self.shallow());
+        let found = ask(&self.top, &["merge-base", &before.id, &after.id]).map_err(none)?;
+        let id = String::from_utf8_lossy(&found).trim().to_owned();
+        Ok(Some([Commit { word: format!("common ancestor of {one} and {other}"), id }, after]))
+    }
+
+    /// A remedy for a `word` that names no revision: the nearest name to `name` of branches, tags and `others`; that a range is
+    /// two commits; that a clone has no more of its history. It follows a sentence.
+    #[must_use]
+    pub fn help(&self, word: &str, name: &str, others: &[String]) -> String {
+        if ends(word).is_some() {
+            return format!("; it is a range, and one commit is expected{}", self.shallow());
+        }
+        let names = self.names();
+        // `main~9` does not mean `main`: the branch is there, and its ancestor is not.
+        let branch = word.split(['~', '^', '@', ':']).next().unwrap_or(word);
+        let is_ancestor = branch != word && self.find(branch).is_some();
+        let known = others.iter().chain(&names).map(String::as_str).filter(|_| !is_ancestor);
+        let near = nearest(name, known).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+        near + &self.shallow()
+    }
+
+    fn shallow(&self) -> String {
+        let answer = ask(&self.top, &["rev-parse", "--is-shallow-repository"]).unwrap_or_default();
+        let text = "; this clone is shallow: fetch more of its history first (git fetch --unshallow)";
+        if answer.starts_with(b"true") { text.to_owned() } else { String::new() }
     }
 
     /// Names of branches and tags.
@@ -156,8 +195,12 @@ impl Repository {
     #[must_use]
     pub fn leaves_out(&self, path: &Path) -> bool {
         let Ok(inside) = self.inside(path) else { return false };
-        let words = [OsStr::new("check-ignore"), OsStr::new("--quiet"), OsStr::new("--"), inside.as_os_str()];
-        ask(&self.top, &words).is_ok()
+        // It knows no patterns, and refuses to be told so. Nothing that begins with a dot is a magic word of git.
+        let mut command = git::command(&self.top);
+        command.env_remove("GIT_LITERAL_PATHSPECS");
+        let path = Path::new(".").join(inside);
+        let words = [OsStr::new("check-ignore"), OsStr::new("--quiet"), OsStr::new("--"), path.as_os_str()];
+        git::answer(&mut command, &words).is_ok()
     }
 
     /// The files below `folder` at a commit.
@@ -171,7 +214,7 @@ impl Repository {
             below.push("/");
             words.extend([OsStr::new("--"), &below]);
         }
-        let listed = ask(&self.top, &words)?;
+        let listed = git::answer(&mut git::fetching(&self.top), &words)?;
         let mut objects = BTreeMap::new();
         for entry in listed.split(|byte| *byte == 0).filter(|entry| !entry.is_empty()) {
             let text = String::from_utf8_lossy(entry);
@@ -184,14 +227,31 @@ impl Repository {
                 objects.insert(inside.to_owned(), id.to_owned());
             }
         }
-        Ok(Files { objects, reader: Mutex::new(Reader::start(&self.top)?) })
+        Ok(Files { objects, reader: Mutex::new(Reader { top: self.top.clone(), process: None, has_failed: false }) })
     }
 }
 
-fn shallow(top: &Path) -> String {
-    let answer = ask(top, &["rev-parse", "--is-shallow-repository"]).unwrap_or_default();
-    let shallow = answer.starts_with(b"true");
-    if shallow { "; this clone is shallow: fetch more of its history first".to_owned() } else { String::new() }
+/// The folder that stands for the top of the work tree of a bare repository: its own, or that of the `.git` that names it.
+fn bare_top(folder: &Path, own: PathBuf) -> Result<PathBuf, String> {
+    let cannot = |error: std::io::Error| format!("cannot find `{}`: {error}", folder.display());
+    let folder = folder.canonicalize().map_err(cannot)?;
+    let own = own.canonicalize().map_err(cannot)?;
+    if folder.starts_with(&own) {
+        return Ok(own);
+    }
+    let named = folder.ancestors().find(|above| above.join(".git").symlink_metadata().is_ok());
+    Ok(named.unwrap_or(&folder).to_owned())
+}
+
+/// The ends of a range, and whether it begins at the common ancestor of both. No name of git has `..`; a path that has it has a
+/// separator beside it.
+fn ends(word: &str) -> Option<(&str, &str, bool)> {
+    let (before, after, from_ancestor) = match word.split_once("...") {
+        Some((before, after)) => (before, after, true),
+        None => word.split_once("..").map(|(before, after)| (before, after, false))?,
+    };
+    let is_path = before.ends_with(['/', '\\']) || after.starts_with(['/', '\\']) || word.trim_matches('.').is_empty();
+    (!is_path).then_some((before, after, from_ancestor))
 }
 
 /// The files of one commit below one folder.
@@ -218,26 +278,63 @@ impl Files {
     pub fn read(&self, path: &Path) -> Result<Option<Vec<u8>>, String> {
         let Some(id) = self.objects.get(path) else { return Ok(None) };
         let read = self.reader.lock().unwrap_or_else(PoisonError::into_inner).read(id);
-        let bytes = read.map_err(|error| format!("git cannot read `{}`: {error}", path.display()))?;
+        let bytes = read.map_err(|problem| format!("git cannot read `{}`: {problem}", path.display()))?;
         bytes.map(Some).ok_or_else(|| format!("git has no contents of `{}`: fetch them first", path.display()))
     }
 }
 
-/// One `git cat-file --batch` for many files.
+/// Reads many objects by one process of git, which is started again where it ended.
 struct Reader {
-    child: Child,
-    input: Option<ChildStdin>,
-    output: BufReader<ChildStdout>,
+    top: PathBuf,
+    process: Option<Process>,
+    /// Set once a process ended by itself, as it does where it cannot fetch an object: its successors fetch nothing.
+    has_failed: bool,
 }
 
 impl Reader {
-    fn start(top: &Path) -> Result<Self, String> {
-        let mut command = git(top);
+    /// None for an object that this clone does not hold.
+    fn read(&mut self, id: &str) -> Result<Option<Vec<u8>>, String> {
+        loop {
+            let mut process = match self.process.take() {
+                Some(process) => process,
+                None => Process::start(&self.top, !self.has_failed)?,
+            };
+            match process.read(id) {
+                Ok(found) => {
+                    self.process = Some(process);
+                    return Ok(found);
+                }
+                Err(error) if process.may_fetch => {
+                    self.has_failed = true;
+                    drop((process, error));
+                }
+                // Its own words say more than that it ended.
+                Err(error) => {
+                    return ask(&self.top, &["cat-file", "blob", id])
+                        .map(Some)
+                        .map_err(|problem| if problem == git::NO_REASON { error.to_string() } else { problem });
+                }
+            }
+        }
+    }
+}
+
+/// One `git cat-file --batch`.
+struct Process {
+    child: Child,
+    input: Option<ChildStdin>,
+    output: BufReader<ChildStdout>,
+    may_fetch: bool,
+}
+
+impl Process {
+    fn start(top: &Path, may_fetch: bool) -> Result<Self, String> {
+        let mut command = if may_fetch { git::fetching(top) } else { git::command(top) };
         command.args(["cat-file", "--batch"]).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
         let cannot = |problem: &dyn std::fmt::Display| format!("`git cat-file` cannot be started: {problem}");
         let mut child = command.spawn().map_err(|error| cannot(&error))?;
         let output = child.stdout.take().ok_or_else(|| cannot(&"it has no output"))?;
-        Ok(Self { input: child.stdin.take(), output: BufReader::new(output), child })
+        Ok(Self { input: child.stdin.take(), output: BufReader::new(output), child, may_fetch })
     }
 
     /// None for an object that this clone does not hold.
@@ -247,7 +344,9 @@ impl Reader {
             input.flush()?;
         }
         let mut head = String::new();
-        self.output.read_line(&mut head)?;
+        if self.output.read_line(&mut head)? == 0 {
+            return Err(std::io::Error::new(std::io::ErrorKind::UnexpectedEof, "`git cat-file` has ended"));
+        }
         let Some(size) = head.trim_end().split(' ').nth(2).and_then(|size| size.parse::<usize>().ok()) else {
             return Ok(None);
         };
@@ -258,10 +357,25 @@ impl Reader {
     }
 }
 
-impl Drop for Reader {
+impl Drop for Process {
     fn drop(&mut self) {
         // Its input at an end, git ends.
         self.input = None;
         let _ = self.child.wait();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_is_no_path() {
+        assert_eq!(ends("main..HEAD"), Some(("main", "HEAD", false)));
+        assert_eq!(ends("v1.0...HEAD~1"), Some(("v1.0", "HEAD~1", true)));
+        assert_eq!((ends("main.."), ends("...main")), (Some(("main", "", false)), Some(("", "main", true))));
+        for path in ["..", "...", "../old", "a/..", "a/../b", "main", "v0.1.0", "./results"] {
+            assert_eq!(ends(path), None, "{path}");
+        }
     }
 }

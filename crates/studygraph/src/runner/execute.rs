@@ -6,7 +6,6 @@
 
 use std::borrow::Cow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
@@ -27,6 +26,7 @@ use crate::store::cache::Cache;
 use crate::store::entry::StoredTable;
 use crate::store::error::StoreError;
 use crate::store::facts::Facts;
+use crate::store::manifest::StudyFolder;
 use crate::store::results::{self, Draw, Folder, Published, Source, Spliced};
 use crate::study::Study;
 use crate::table::data::Table;
@@ -142,8 +142,15 @@ fn publishing<T>(
     Surroundings { cache, observer, stop, draw, .. }: Surroundings<'_>,
     publish: impl FnOnce(&dyn Fn() -> Facts, Source<'_>) -> Result<T, StoreError>,
 ) -> Result<T, StoreError> {
-    let facts =
-        || Facts::collect(&study.program.about, study.path.parent().unwrap_or(Path::new("")), options.threads());
+    let facts = || {
+        let folder = StudyFolder::of(&study.files()).unwrap_or_else(|problem| {
+            let path = study.path.display();
+            let message = &format!("the results do not name the commit of `{path}`, since git refuses: {problem}");
+            observer.event(&Event::Warning { message });
+            StudyFolder::default()
+        });
+        Facts::collect(&study.program.about, folder, options.threads())
+    };
     // What a run that was stopped had finished is published; only whoever asks meanwhile gets less.
     let go_on = |file: &str| {
         let is_late = !outcome.stopped && stop.load(Ordering::Relaxed);

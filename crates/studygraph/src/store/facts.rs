@@ -3,12 +3,13 @@
 //! Asking `git` starts a process, so the facts are collected only when a manifest is to be written. Must not know:
 //! studies, tables.
 
-use std::path::Path;
-use std::process::Command;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use super::manifest::{Machine, Program, StudyFolder};
 use crate::about::About;
+use crate::git;
 
 /// What a manifest says besides the results.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,10 +22,9 @@ pub struct Facts {
 }
 
 impl Facts {
-    /// Of a run by the program `about`; `folder`: where the study lies, whose git commit is recorded.
+    /// Of a run by the program `about` of a study in `study_folder`.
     #[must_use]
-    pub fn collect(about: &About, folder: &Path, threads: usize) -> Self {
-        let (commit, uncommitted_changes) = git(folder).map_or((None, None), |(commit, dirty)| (commit, Some(dirty)));
+    pub fn collect(about: &About, study_folder: StudyFolder, threads: usize) -> Self {
         let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
         Self {
             program: Program {
@@ -36,7 +36,7 @@ impl Facts {
                 profile: about.profile.to_owned(),
                 dependencies: about.dependencies.to_owned(),
             },
-            study_folder: StudyFolder { commit, uncommitted_changes },
+            study_folder,
             machine: Machine {
                 system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
                 processor: processor(),
@@ -48,27 +48,49 @@ impl Facts {
     }
 }
 
-/// The commit (none before the first) and whether tracked or new files differ from it; one process answers both.
-fn git(folder: &Path) -> Option<(Option<String>, bool)> {
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    if !may_be_in_git(folder) {
-        return None;
+impl StudyFolder {
+    /// The commit of the repository around a study (none before the first), and whether the study is another one there: its file,
+    /// which is the first of `files`, or one of the others that it names. A file that the commit does not hold is a change. Nothing
+    /// outside of a repository.
+    ///
+    /// # Errors
+    /// The reason of git for not answering although a repository surrounds the study.
+    pub fn of(files: &[PathBuf]) -> Result<Self, String> {
+        let folder = files.first().and_then(|file| file.parent()).unwrap_or(Path::new(""));
+        if !git::may_know(folder) {
+            return Ok(Self::default());
+        }
+        let tracked: Vec<PathBuf> = files.iter().filter_map(|file| tracked(folder, file)).collect();
+        // Said in full, since settings of the user change the defaults.
+        let all = ["--untracked-files=all", "--ignored=matching", "--ignore-submodules=none", "--no-renames", "--"];
+        let words = ["status", "--porcelain=v2", "--branch", "-z"].into_iter().chain(all).map(OsStr::new);
+        let paths = tracked.iter().map(|path| path.as_os_str());
+        let answer = match git::ask(folder, &words.chain(paths).collect::<Vec<_>>()) {
+            // A bare repository has no files that a study could be one of.
+            Err(problem) if problem.contains(git::NO_WORK_TREE) => return Ok(Self::default()),
+            answer => answer?,
+        };
+        let text = String::from_utf8_lossy(&answer);
+        let entries = || text.split('\0').filter(|entry| !entry.is_empty());
+        let commit = entries().find_map(|entry| entry.strip_prefix("# branch.oid "));
+        let is_changed = tracked.len() < files.len() || entries().any(|entry| !entry.starts_with("# "));
+        let commit = commit.filter(|commit| *commit != "(initial)").map(str::to_owned);
+        Ok(Self { commit, uncommitted_changes: Some(is_changed) })
     }
-    let status = ["status", "--porcelain=v2", "--branch"];
-    let output = Command::new("git").arg("-C").arg(folder).args(status).output().ok()?;
-    if !output.status.success() {
-        return None;
-    }
-    let text = String::from_utf8_lossy(&output.stdout);
-    let commit = text.lines().find_map(|line| line.strip_prefix("# branch.oid "));
-    let dirty = text.lines().any(|line| !line.starts_with('#'));
-    Some((commit.filter(|commit| *commit != "(initial)").map(str::to_owned), dirty))
 }
 
-/// Whether there is a work tree around a folder, as git looks for one. To start git for nothing takes as long as a small study.
-fn may_be_in_git(folder: &Path) -> bool {
-    let Ok(folder) = folder.canonicalize() else { return true };
-    std::env::var_os("GIT_DIR").is_some() || folder.ancestors().any(|folder| folder.join(".git").exists())
+/// The path by which git knows a file, from the folder of the study: its own, that of the submodule or repository around it, that of
+/// the file behind a link. None for a file that is not there, or lies elsewhere.
+fn tracked(folder: &Path, file: &Path) -> Option<PathBuf> {
+    let (folder, file) = (real(folder)?, real(file)?);
+    let inside = file.strip_prefix(&folder).ok()?;
+    let below = || inside.ancestors().skip(1).filter(|below| !below.as_os_str().is_empty());
+    let nested = below().find(|below| folder.join(below).join(".git").symlink_metadata().is_ok());
+    Some(nested.unwrap_or(inside).to_owned())
+}
+
+fn real(path: &Path) -> Option<PathBuf> {
+    if path.as_os_str().is_empty() { Path::new(".").canonicalize().ok() } else { path.canonicalize().ok() }
 }
 
 fn processor() -> String {
@@ -116,37 +138,67 @@ mod tests {
     #[test]
     fn a_folder_outside_git_has_no_commit() {
         let folder = tempfile::tempdir().unwrap();
-        let facts = Facts::collect(&ABOUT, folder.path(), 3);
-        assert_eq!(facts.study_folder, StudyFolder::default());
+        let found = StudyFolder::of(&[folder.path().join("a.yaml")]).unwrap();
+        assert_eq!(found, StudyFolder::default());
+        let facts = Facts::collect(&ABOUT, found, 3);
         // Built here, wherever the study lies.
         assert_eq!(facts.program.commit.as_deref(), Some("built"));
         assert_eq!(facts.program.code, ABOUT.code);
         assert!(facts.machine.cores >= 1 && facts.machine.threads == 3);
     }
 
+    /// Files of the study count: changed, staged, new, ignored, in a submodule, behind a link. Others do not.
     #[test]
-    fn a_commit_and_a_change_are_seen() {
+    fn a_change_is_one_of_the_study_alone() {
         let folder = tempfile::tempdir().unwrap();
-        let run = |arguments: &[&str]| {
+        let run = |at: &str, arguments: &[&str]| {
             let identity = ["-c", "user.name=a", "-c", "user.email=a@b", "-c", "commit.gpgsign=false"];
-            let git = Command::new("git").arg("-C").arg(folder.path()).args(identity).args(arguments).output().unwrap();
-            assert!(git.status.success(), "{arguments:?}");
+            let mut git = git::command(&folder.path().join(at));
+            let git = git.args(identity).args(arguments).output().unwrap();
+            assert!(git.status.success(), "{arguments:?}: {git:?}");
         };
-        run(&["init", "-q"]);
-        std::fs::write(folder.path().join("a"), "1").unwrap();
-        assert_eq!(git(folder.path()), Some((None, true)));
-        run(&["add", "a"]);
-        run(&["commit", "-qm", "a"]);
-        let (commit, dirty) = git(folder.path()).unwrap();
-        assert_eq!((commit.unwrap().len(), dirty), (40, false));
-        std::fs::write(folder.path().join("a"), "2").unwrap();
-        assert!(git(folder.path()).unwrap().1);
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        let of = |names: &[&str]| {
+            let files: Vec<PathBuf> = names.iter().map(|name| folder.path().join(name)).collect();
+            StudyFolder::of(&files).unwrap()
+        };
+        let changed = |names: &[&str]| of(names).uncommitted_changes.unwrap();
+        run("", &["init", "-q"]);
+        // A pattern of git in a name is no pattern here.
+        write("a*.yaml", "1");
+        assert_eq!(of(&["a*.yaml"]), StudyFolder { commit: None, uncommitted_changes: Some(true) });
+        std::fs::create_dir_all(folder.path().join("traces/sub")).unwrap();
+        write("traces/b.csv", "1");
+        write("traces/ignored.csv", "1");
+        write(".gitignore", "ignored.csv\n");
+        run("traces/sub", &["init", "-q"]);
+        write("traces/sub/c.csv", "1");
+        run("traces/sub", &["add", "-A"]);
+        run("traces/sub", &["commit", "-qm", "c"]);
+        run("", &["add", "-A"]);
+        run("", &["commit", "-qm", "a"]);
+        write("new.txt", "results and notes");
+        write("ab.yaml", "1");
+        let study = ["a*.yaml", "traces/b.csv", "traces/sub/c.csv"];
+        assert_eq!((of(&study).commit.unwrap().len(), changed(&study)), (40, false));
+        assert!(changed(&["a*.yaml", "traces/ignored.csv"]) && changed(&["ab.yaml"]) && changed(&["none.yaml"]));
+        write("traces/b.csv", "2");
+        assert!(changed(&study) && !changed(&study[..1]));
+        run("", &["add", "-A"]);
+        assert!(changed(&study));
+        run("", &["commit", "-qm", "b"]);
+        write("traces/sub/c.csv", "2");
+        assert!(changed(&study) && !changed(&study[..2]));
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink("a*.yaml", folder.path().join("link.yaml")).unwrap();
+            assert!(!changed(&["link.yaml"]));
+            write("a*.yaml", "2");
+            assert!(changed(&["link.yaml"]));
+        }
         // The study's commit is none of the program's.
-        let facts = Facts::collect(&ABOUT, folder.path(), 1);
-        assert_eq!(
-            (facts.study_folder.commit.clone(), facts.study_folder.uncommitted_changes),
-            (git(folder.path()).unwrap().0, Some(true))
-        );
+        let facts = Facts::collect(&ABOUT, of(&study), 1);
+        assert_eq!((&facts.study_folder, facts.study_folder.uncommitted_changes), (&of(&study), Some(true)));
         assert_ne!(facts.program.commit, facts.study_folder.commit);
     }
 }

@@ -24,6 +24,7 @@ pub use super::key_record::{KeyRecord, Short};
 use super::{hexadecimal, shared};
 use crate::table::schema::{Column, Schema};
 use declare::digest::Digest;
+use declare::text::merge_conflict;
 
 /// The format that is written; all up to it are read.
 pub const FORMAT: u32 = 2;
@@ -115,7 +116,7 @@ pub struct Program {
 pub struct StudyFolder {
     /// The commit of the folder, when it is a git work tree.
     pub commit: Option<String>,
-    /// Whether anything in that work tree differed from the commit.
+    /// Whether the study differed from that commit: its file, or one that it names.
     pub uncommitted_changes: Option<bool>,
 }
 
@@ -221,6 +222,9 @@ pub(super) fn own_file(table: &str) -> String {
     [table, ".parquet"].concat()
 }
 
+/// The remedy for a manifest that cannot be read.
+pub const AGAIN: &str = "`gearstudy run STUDY` writes it anew";
+
 impl Manifest {
     /// As text, lines of which differ where something else differs.
     ///
@@ -284,10 +288,21 @@ impl Manifest {
         wire::with_other_files(text, files)
     }
 
-    /// Whether this program can read its format.
-    #[must_use]
-    pub fn is_known(&self) -> bool {
-        (1..=FORMAT).contains(&self.format)
+    /// The manifest that a file holds.
+    ///
+    /// # Errors
+    /// A phrase: that the bytes are no manifest, or one of another format.
+    pub fn parse(bytes: &[u8]) -> Result<Self, String> {
+        let manifest: Self = serde_json::from_slice(bytes).map_err(|error| {
+            let conflict = std::str::from_utf8(bytes).ok().and_then(merge_conflict);
+            let conflict =
+                conflict.map(|(first, last)| format!("it holds a merge conflict in lines {first} to {last}"));
+            conflict.unwrap_or_else(|| error.to_string())
+        })?;
+        if (1..=FORMAT).contains(&manifest.format) {
+            return Ok(manifest);
+        }
+        Err(format!("it has format {}, and this version reads formats 1 to {FORMAT}", manifest.format))
     }
 }
 

@@ -152,6 +152,11 @@ pub(super) fn files(text: &str, path: &Path, program: &'static Program, settings
 }
 
 impl Changes {
+    /// The files that were read beside the study.
+    pub(super) fn files(&self) -> impl Iterator<Item = &Path> {
+        self.files.iter().map(Attached::path)
+    }
+
     /// A message with the option or the file for its place, where it is about what that says.
     pub(super) fn placed(&self, error: LoadError) -> LoadError {
         if let Some(error) = error.each().find_map(|wrong| self.files.iter().find_map(|file| file.placed(wrong))) {

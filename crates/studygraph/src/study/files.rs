@@ -36,6 +36,10 @@ pub(super) struct Attached {
 }
 
 impl Attached {
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// A message with this file for its place, where it is about what stands in it.
     pub(super) fn placed(&self, wrong: &Diagnostic) -> Option<LoadError> {
         let place = wrong.place.filter(|place| (self.from..self.to).contains(&place.offset))?;

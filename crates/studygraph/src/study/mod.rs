@@ -134,6 +134,17 @@ impl Study {
         })
     }
 
+    /// The files that its results depend on: its own, then those that it names.
+    #[must_use]
+    pub fn files(&self) -> Vec<PathBuf> {
+        let named = if self.unread.is_empty() {
+            self.changes.files().map(Path::to_owned).collect()
+        } else {
+            files(&self.text, &self.path, self.program, &Settings::default())
+        };
+        [self.path.clone()].into_iter().chain(named).collect()
+    }
+
     /// What is wrong with it, found after it was read.
     #[must_use]
     pub fn refused(&self, wrong: impl Into<Faults>) -> LoadError {
@@ -211,6 +222,12 @@ impl fmt::Display for LoadError {
 }
 
 impl std::error::Error for LoadError {}
+
+/// Digest of the text of a study, which is the same whatever its line ends are: git may change them on the way.
+#[must_use]
+pub fn digest(text: &str) -> String {
+    blake3::hash(text.replace("\r\n", "\n").as_bytes()).to_string()
+}
 
 /// The files that a study names, as far as that can be told, where they would be.
 #[must_use]
