@@ -37,6 +37,10 @@ pub(super) fn diff(asked: &Differences, places: &Places, quiet: bool) -> Result<
     let repository = Repository::around(&places.results);
     let Asked { mut sides, studies } = read_words(asked, places, &repository).map_err(Ending::Usage)?;
     let is_ours = sides.len() < 2;
+    if is_ours && repository.as_ref().is_ok_and(Repository::is_bare) {
+        let message = "a bare repository has no results folder: name two revisions, `gearstudy diff OLD NEW`";
+        return Err(Ending::Usage(message.to_owned()));
+    }
     let after = if is_ours { working_tree(places)? } else { sides.remove(1) };
     let before = match sides.pop() {
         Some(before) => before,
@@ -140,6 +144,12 @@ fn read_words(asked: &Differences, places: &Places, repository: &Result<Reposito
     let (mut sides, mut studies) = (Vec::new(), Vec::new());
     for word in &asked.words {
         let side = if studies.is_empty() && sides.len() < 2 { side(word, places, repository)? } else { None };
+        if side.is_none() && studies.is_empty() && sides.is_empty() {
+            sides = range(word, places, repository)?;
+            if !sides.is_empty() {
+                continue;
+            }
+        }
         match side {
             Some(side) => sides.push(side),
             None => studies.push(named(word, &sides, places, repository)?),
@@ -167,6 +177,14 @@ pub(super) fn side(
         Ok(found) if found.commit(word).is_ok() => of_revision(word, places, repository).map(Some),
         _ => Ok(None),
     }
+}
+
+/// Both sides of a range of revisions, `A..B` or `A...B`; none for another word.
+fn range(word: &str, places: &Places, repository: &Result<Repository, String>) -> Result<Vec<Side>, String> {
+    let Ok(repository) = repository else { return Ok(Vec::new()) };
+    let commits = repository.range(word)?.map_or_else(Vec::new, Vec::from);
+    let inside = if commits.is_empty() { PathBuf::new() } else { repository.inside(&places.results)? };
+    commits.iter().map(|commit| Side::commit(repository, commit, &inside)).collect()
 }
 
 fn of_revision(word: &str, places: &Places, repository: &Result<Repository, String>) -> Result<Side, String> {
@@ -198,7 +216,6 @@ fn named(
     }
     let mut names = known;
     if sides.len() < 2 {
-        names.extend(repository.as_ref().map(Repository::names).unwrap_or_default());
         names.extend(results_beside(word));
     }
     let what = if sides.len() < 2 {
@@ -206,9 +223,14 @@ fn named(
     } else {
         "no study with results"
     };
-    let help = nearest(&name, names.iter().map(String::as_str)).map(|near| format!("; did you mean `{near}`?"));
-    let outside = repository.as_ref().err().filter(|_| sides.len() < 2).map(|problem| format!("; {problem}"));
-    Err(format!("`{word}` is {what}{}", help.or(outside).unwrap_or_default()))
+    let help = match repository {
+        Ok(repository) if sides.len() < 2 => repository.help(word, &name, &names),
+        _ => nearest(&name, names.iter().map(String::as_str))
+            .map_or_else(String::new, |near| format!("; did you mean `{near}`?")),
+    };
+    let outside = repository.as_ref().err().filter(|_| sides.len() < 2 && help.is_empty());
+    let outside = outside.map_or_else(String::new, |problem| format!("; {problem}"));
+    Err(format!("`{word}` is {what}{help}{outside}"))
 }
 
 /// Folders with results that lie where a word would name one.

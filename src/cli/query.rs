@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::arguments::{Format, Places, Question};
 use super::diff::{side, study_name, working_tree};
 use super::print::{Grid, Heading};
-use super::progress::out;
+use super::progress::{out, told};
 use super::show::table_value;
 use super::{Ending, json, studies};
 use crate::query::tables::Tables;
@@ -63,7 +63,9 @@ pub(super) fn query(asked: &Question, places: &Places, quiet: bool) -> Result<()
 /// Every table and its columns with their units, since an answer has none.
 fn list(tables: &mut Tables<'_>) -> Result<String, String> {
     let mut text = String::new();
-    for (name, record) in tables.list()? {
+    let (listed, unread) = tables.list()?;
+    unread.iter().for_each(|problem| told(problem));
+    for (name, record) in listed {
         let rows = record.rows;
         text += &format!("{name}  {rows} {}\n", if rows == 1 { "row" } else { "rows" });
         for column in record.columns.iter() {
@@ -75,7 +77,9 @@ fn list(tables: &mut Tables<'_>) -> Result<String, String> {
 }
 
 fn listed(tables: &mut Tables<'_>) -> Result<Value, String> {
-    Ok(tables.list()?.iter().map(|(name, record)| table_value(record, name)).collect())
+    let (listed, unread) = tables.list()?;
+    unread.iter().for_each(|problem| told(problem));
+    Ok(listed.iter().map(|(name, record)| table_value(record, name)).collect())
 }
 
 fn grid(answer: &Answer) -> Grid<'_> {

@@ -13,6 +13,7 @@ use crate::program;
 use declare::error::Diagnostic;
 use studygraph::runner::standing::{Condition, StageStanding, Standing, standing_of};
 use studygraph::store::cache::{Cache, Lookup};
+use studygraph::store::index;
 use studygraph::store::results::{FileState, Folder, Known};
 use studygraph::study::{self, Settings, Study};
 
@@ -32,6 +33,8 @@ struct Read {
     bytes: u64,
     /// Not as they were written.
     damaged: Vec<String>,
+    /// Of these, texts of which the line ends alone differ.
+    line_ends: Vec<String>,
     /// Nobody knows what they should be.
     unknown: Vec<String>,
 }
@@ -57,7 +60,7 @@ pub(super) fn status(
     let cache = places.cache.is_dir().then(|| Cache::open(&places.cache).ok()).flatten();
     let mut faults = Vec::new();
     let (mut all, mut values) = (Vec::new(), Vec::new());
-    let (mut damaged, mut stale) = (Vec::new(), Vec::new());
+    let (mut damaged, mut line_ends, mut stale) = (Vec::new(), Vec::new(), Vec::new());
     for file in &files {
         match told(file, &settings, places, cache.as_ref(), check) {
             Ok(told) => {
@@ -67,9 +70,12 @@ pub(super) fn status(
                 } else {
                     out(&(text(&told) + &read_text(&told)));
                 }
-                let names = told.read.iter().flat_map(|read| &read.damaged);
                 let folder = Folder::new(&places.results, &told.study.name);
-                damaged.extend(names.map(|name| folder.path().join(name).display().to_string()));
+                if let Some(read) = &told.read {
+                    let path = |name: &String| folder.path().join(name).display().to_string();
+                    damaged.extend(read.damaged.iter().filter(|name| !read.line_ends.contains(name)).map(path));
+                    line_ends.extend(read.line_ends.iter().map(path));
+                }
                 if check && !is_up_to_date(&told.standing) {
                     stale.push(told.study.name.clone());
                 }
@@ -96,6 +102,10 @@ pub(super) fn status(
     let mut advice = Vec::new();
     if !damaged.is_empty() {
         advice.push(format!("damaged; `gearstudy run` writes it anew:\n  {}", damaged.join("\n  ")));
+    }
+    if !line_ends.is_empty() {
+        let again = "`gearstudy run` writes it anew, and `results/** -text` in .gitattributes keeps git from it";
+        advice.push(format!("only its line ends differ (git's autocrlf); {again}:\n  {}", line_ends.join("\n  ")));
     }
     let of_cache = cache.as_ref().filter(|_| check).map(|cache| cache.verify(true)).unwrap_or_default();
     if !of_cache.is_empty() {
@@ -153,7 +163,8 @@ fn standing_now(study: &Study, folder: &Folder, check: bool) -> Result<(Standing
                 _ => {}
             }
         }
-        Read { files, bytes, damaged, unknown }
+        let line_ends = damaged.iter().filter(|file| known.has_other_line_ends(file)).cloned().collect();
+        Read { files, bytes, damaged, line_ends, unknown }
     });
     Ok((standing_of(study, known.as_ref())?, read))
 }
@@ -195,13 +206,15 @@ fn value(told: &Told) -> Value {
 
 /// What reading every file found.
 fn read_text(told: &Told) -> String {
-    let Some(Read { files, bytes, damaged, unknown }) = &told.read else { return String::new() };
+    let Some(Read { files, bytes, damaged, line_ends, unknown }) = &told.read else { return String::new() };
     #[allow(clippy::cast_precision_loss)]
     let mut text = format!("  {files} files as they were written ({:.1} MB)\n", *bytes as f64 / 1e6);
-    for (files, what) in [(damaged, "damaged"), (unknown, "not known what it was; a run tells")] {
-        for file in files {
-            text += &format!("  {file}: {what}\n");
-        }
+    for file in damaged {
+        let what = if line_ends.contains(file) { index::LINE_ENDS } else { "damaged" };
+        text += &format!("  {file}: {what}\n");
+    }
+    for file in unknown {
+        text += &format!("  {file}: not known what it was; a run tells\n");
     }
     text
 }
@@ -226,6 +239,10 @@ fn text(told: &Told) -> String {
     }
     match &standing.foreign[..] {
         [] => {}
+        foreign if foreign == standing.line_ends => {
+            let files = if let [one] = foreign { format!("`{one}`") } else { format!("{} files", foreign.len()) };
+            parts.push(format!("only the line ends of {files} differ from those of the last run (git's autocrlf)"));
+        }
         [one] => parts.push(format!("`{one}` is not as the last run wrote it")),
         [first, ..] => {
             let more = standing.foreign.len() - 1;

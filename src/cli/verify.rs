@@ -94,7 +94,7 @@ fn word(diff: &TableDiff) -> &'static str {
     match diff.state {
         Difference::Same => "identical",
         Difference::WithinTolerance => "within tolerance",
-        Difference::Changed | Difference::Removed | Difference::Added => "different",
+        Difference::Unknown | Difference::Changed | Difference::Removed | Difference::Added => "different",
     }
 }
 

@@ -34,6 +34,19 @@ struct Study {
     manifest: Manifest,
 }
 
+/// The studies of a side: those whose manifests can be read, and the names of the others, each with the reason.
+struct Studies {
+    read: Vec<Study>,
+    unread: Vec<(String, String)>,
+}
+
+impl Studies {
+    /// The reasons for which some cannot be read, behind what was said of the others.
+    fn reasons(&self) -> String {
+        self.unread.iter().map(|(_, problem)| format!("; {problem}")).collect()
+    }
+}
+
 impl<'a> Tables<'a> {
     #[must_use]
     pub fn new(open: Open<'a>, on_demand: OnDemand<'a>, study: Option<&'a str>, cache: Option<&'a Cache>) -> Self {
@@ -63,21 +76,22 @@ impl<'a> Tables<'a> {
         }
     }
 
-    /// Every table, in the words of a query, with its rows and columns.
+    /// Every table, in the words of a query, with its rows and columns; and the reasons for which some studies could not be read.
     ///
     /// # Errors
-    /// When the results cannot be read.
-    pub fn list(&mut self) -> Result<Vec<(String, TableRecord)>, String> {
+    /// When no results can be read, or not those of the study that is meant.
+    pub fn list(&mut self) -> Result<(Vec<(String, TableRecord)>, Vec<String>), String> {
         let wanted = self.study;
         let side = self.side(None)?;
         let studies = studies(side)?;
         known_study(&studies, wanted, side)?;
-        let wanted = studies.into_iter().filter(|study| wanted.is_none_or(|wanted| study.name == wanted));
+        let unread = studies.unread.into_iter().filter(|_| wanted.is_none()).map(|(_, problem)| problem).collect();
+        let wanted = studies.read.into_iter().filter(|study| wanted.is_none_or(|wanted| study.name == wanted));
         let tables = wanted.flat_map(|study| {
             let records = study.manifest.stages.into_iter().flat_map(|stage| stage.tables);
             records.map(move |record| (format!("{}.{}", study.name, record.name), record)).collect::<Vec<_>>()
         });
-        Ok(tables.collect())
+        Ok((tables.collect(), unread))
     }
 
     /// What is to be done about a column that a table of this name does not have, if its study gives it where it is asked for.
@@ -118,14 +132,22 @@ fn table(
     if is_short {
         known_study(&studies, study, side)?;
     }
-    let only = study.or(if let [only] = &studies[..] { Some(only.name.as_str()) } else { None });
-    let Some((of, stage, record)) = find(&studies, only, name) else {
+    let only = match (&studies.read[..], &studies.unread[..]) {
+        ([only], []) => Some(only.name.as_str()),
+        _ => None,
+    };
+    let only = study.or(only);
+    let Some((of, stage, record)) = find(&studies.read, only, name) else {
+        let unread = parted(only, name).and_then(|(study, _)| studies.unread.iter().find(|(name, _)| name == study));
+        if let Some((_, problem)) = unread {
+            return Err(problem.clone());
+        }
         if let Some(said) = parted(only, name).and_then(|(study, table)| on_demand(study, table)) {
             return Err(said);
         }
-        let known = known(&studies, only, name.matches('.').count());
+        let known = known(&studies.read, only, name.matches('.').count());
         let help = suggest(name, known.iter().map(String::as_str));
-        return Err(format!("there is no table `{name}` in {}; {help}", side.label));
+        return Err(format!("there is no table `{name}` in {}; {help}{}", side.label, studies.reasons()));
     };
     Ok(match side.table(&of.folder, stage, record, cache).0 {
         Got::Table(table) => Ok(*table),
@@ -136,20 +158,35 @@ fn table(
     })
 }
 
-fn studies(side: &Side) -> Result<Vec<Study>, String> {
-    let mut studies = Vec::new();
+/// # Errors
+/// When there is none that can be read.
+fn studies(side: &Side) -> Result<Studies, String> {
+    let mut studies = Studies { read: Vec::new(), unread: Vec::new() };
     for folder in side.studies()? {
-        if let Some(manifest) = side.manifest(&folder)? {
-            let name = if side.is_single() { manifest.study.clone() } else { folder.clone() };
-            studies.push(Study { name, folder, manifest });
+        match side.manifest(&folder) {
+            Ok(Some(manifest)) => {
+                let name = if side.is_single() { manifest.study.clone() } else { folder.clone() };
+                studies.read.push(Study { name, folder, manifest });
+            }
+            Ok(None) => {}
+            Err(problem) => studies.unread.push((folder, problem)),
         }
     }
-    if studies.is_empty() { Err(format!("there are no results in {}", side.label)) } else { Ok(studies) }
+    match (&studies.read[..], studies.unread.first()) {
+        ([], Some((_, problem))) => Err(problem.clone()),
+        ([], None) => Err(format!("there are no results in {}", side.label)),
+        _ => Ok(studies),
+    }
 }
 
-fn known_study(studies: &[Study], wanted: Option<&str>, side: &Side) -> Result<(), String> {
-    let Some(wanted) = wanted.filter(|wanted| studies.iter().all(|study| study.name != *wanted)) else { return Ok(()) };
-    let help = suggest(wanted, studies.iter().map(|study| study.name.as_str()));
+fn known_study(studies: &Studies, wanted: Option<&str>, side: &Side) -> Result<(), String> {
+    let Some(wanted) = wanted.filter(|wanted| studies.read.iter().all(|study| study.name != *wanted)) else {
+        return Ok(());
+    };
+    if let Some((_, problem)) = studies.unread.iter().find(|(name, _)| name == wanted) {
+        return Err(problem.clone());
+    }
+    let help = suggest(wanted, studies.read.iter().map(|study| study.name.as_str()));
     Err(format!("there is no study `{wanted}` in {}; {help}", side.label))
 }
 

@@ -6,6 +6,7 @@ mod diff;
 mod disk;
 mod editor;
 mod ended;
+mod git;
 mod json;
 mod limits;
 mod places;

@@ -6,7 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::model::{Comparison, Damage, Difference, Flip, StageDiff, StudyDiff, TableDiff};
-use super::{curves, table, verdict, why};
+use super::renamed::ManifestPair;
+use super::{curves, renamed, table, verdict, why};
 use crate::history::side::{Got, Side};
 use crate::store::cache::Cache;
 use crate::store::manifest::{FORMAT, Manifest, StageRecord, TableRecord};
@@ -38,13 +39,6 @@ pub struct Options<'a> {
     pub not_kept: Option<&'a dyn Fn(&Path) -> bool>,
 }
 
-/// A study's name and its manifests, with the folder each lies in.
-struct ManifestPair {
-    name: String,
-    before: Option<(String, Manifest)>,
-    after: Option<(String, Manifest)>,
-}
-
 /// Compares everything that both sides hold.
 ///
 /// # Errors
@@ -64,6 +58,11 @@ pub fn compare(before: &Side, after: &Side, options: &Options<'_>) -> Result<Com
     let pairs = pairs(before, after, options, &mut comparison)?;
     comparison.remarks.extend(check_tolerances(&pairs, options.tolerances)?);
     for pair in &pairs {
+        if !pair.unread.is_empty() {
+            comparison.problems.extend(pair.unread.iter().cloned());
+            comparison.studies.push(unknown(&pair.name, &pair.unread));
+            continue;
+        }
         comparison.damaged.extend(damaged(pair, before, after, options));
         let study = match (&pair.before, &pair.after) {
             (Some(old), Some(new)) => {
@@ -71,7 +70,8 @@ pub fn compare(before: &Side, after: &Side, options: &Options<'_>) -> Result<Com
                 let own = own.collect::<Result<Vec<_>, _>>();
                 let own =
                     own.map_err(|problem| format!("{}, in the manifest of {}: {problem}", pair.name, after.label))?;
-                let task = Task { before, after, old, new, own, options };
+                let renamed_from = pair.renamed_from.as_deref();
+                let task = Task { before, after, old, new, renamed_from, own, options };
                 let (study, found) = task.study(&pair.name);
                 comparison.verdicts.extend(found.flips);
                 replace(&mut comparison.damaged, found.damaged);
@@ -88,9 +88,14 @@ pub fn compare(before: &Side, after: &Side, options: &Options<'_>) -> Result<Com
         };
         comparison.studies.push(study);
     }
+    if comparison.studies.is_empty() {
+        comparison.problems.push(format!("{} and {} have no study to compare", before.label, after.label));
+    }
     verdict::sort(&mut comparison.verdicts);
+    let unknown = (!comparison.problems.is_empty()).then_some(Difference::Unknown);
     let damaged = (!comparison.damaged.is_empty()).then_some(Difference::Changed);
-    comparison.state = Difference::of_parts(comparison.studies.iter().map(|study| study.state).chain(damaged));
+    comparison.state =
+        Difference::of_parts(comparison.studies.iter().map(|study| study.state).chain(damaged).chain(unknown));
     Ok(comparison)
 }
 
@@ -140,66 +145,86 @@ fn damaged(pair: &ManifestPair, before: &Side, after: &Side, options: &Options<'
     found
 }
 
+/// The manifest in a folder of a side, or the reason for which it cannot be read; the study's name first.
+type Read = (String, String, Result<Manifest, String>);
+
+/// The studies of a side that are asked for, and those that are not `there` on the other side: one may have another name here.
+fn read(side: &Side, there: &Side, options: &Options<'_>) -> Result<Vec<Read>, String> {
+    let folders = side.studies()?;
+    if folders.is_empty() {
+        return Err(format!("there are no results at {}", side.label));
+    }
+    let others = there.studies()?;
+    let is_wanted = |folder: &String| {
+        options.studies.is_empty()
+            || side.is_single()
+            || options.studies.contains(folder)
+            || !there.is_single() && !others.contains(folder)
+    };
+    let read = folders.into_iter().filter(is_wanted).filter_map(|folder| {
+        let manifest = side.manifest(&folder).transpose()?;
+        let name = match &manifest {
+            Ok(manifest) if side.is_single() => manifest.study.clone(),
+            _ => folder.clone(),
+        };
+        Some((name, folder, manifest))
+    });
+    Ok(read.collect())
+}
+
 fn pairs(
     before: &Side,
     after: &Side,
     options: &Options<'_>,
     comparison: &mut Comparison,
 ) -> Result<Vec<ManifestPair>, String> {
-    let mut problems = Vec::new();
-    let mut read = |side: &Side| -> Result<Vec<(String, String, Option<Manifest>)>, String> {
-        let folders = side.studies()?;
-        if folders.is_empty() {
-            return Err(format!("there are no results at {}", side.label));
-        }
-        let read = folders.into_iter().filter_map(|folder| {
-            let wanted = options.studies.is_empty() || side.is_single() || options.studies.contains(&folder);
-            let manifest = if wanted { side.manifest(&folder) } else { Ok(None) };
-            match manifest {
-                Ok(Some(manifest)) if side.is_single() => Some((manifest.study.clone(), folder, Some(manifest))),
-                Ok(manifest) => Some((folder.clone(), folder, manifest)),
-                Err(problem) => {
-                    problems.push(problem);
-                    None
-                }
-            }
-        });
-        Ok(read.collect())
-    };
-    let (mut old, new) = (read(before)?, read(after)?);
-    let broken = !problems.is_empty();
-    comparison.problems.extend(problems);
+    let (mut old, new) = (read(before, after, options)?, read(after, before, options)?);
     if let (true, true, [old], [new]) = (before.is_single(), after.is_single(), &mut old[..], &new[..]) {
         // Two folders of one study each are meant for each other, whatever they are called.
         old.0.clone_from(&new.0);
     }
-    let mut names: Vec<&String> = old.iter().chain(&new).map(|(name, ..)| name).collect();
+    let mut names: Vec<String> = old.iter().chain(&new).map(|(name, ..)| name.clone()).collect();
     names.sort();
     names.dedup();
-    if let Some(unknown) = options.studies.iter().find(|wanted| !names.contains(wanted) && !broken) {
-        let known = names.iter().map(|name| name.as_str());
-        let help = suggest(unknown, known.collect::<Vec<_>>());
+    // A single folder whose manifest cannot be read is that of any study.
+    let is_any = |side: &[Read]| side.iter().any(|(name, _, read)| name.is_empty() && read.is_err());
+    let is_known = |wanted: &String| names.contains(wanted) || is_any(&old) || is_any(&new);
+    if let Some(unknown) = options.studies.iter().find(|wanted| !is_known(wanted)) {
+        // What was read in case that it has another name here counts too.
+        let mut known: BTreeSet<String> = names.iter().cloned().collect();
+        known.extend(before.studies()?.into_iter().chain(after.studies()?).filter(|name| !name.is_empty()));
+        let help = suggest(unknown, known.iter().map(String::as_str).collect::<Vec<_>>());
         return Err(format!("neither {} nor {} has results of a study `{unknown}`; {help}", before.label, after.label));
     }
-    let take = |side: &[(String, String, Option<Manifest>)], wanted: &str| {
-        let found = side.iter().find(|(name, ..)| name == wanted);
-        found.and_then(|(_, folder, manifest)| Some((folder.clone(), manifest.clone()?)))
+    let take = |side: &[Read], wanted: &str, unread: &mut Vec<String>| {
+        let (_, folder, read) = side.iter().find(|(name, ..)| name == wanted)?;
+        match read {
+            Ok(manifest) => Some((folder.clone(), manifest.clone())),
+            Err(problem) => {
+                unread.push(problem.clone());
+                None
+            }
+        }
     };
-    let mut pairs = Vec::new();
-    for name in names.iter().filter(|name| options.studies.is_empty() || options.studies.contains(name)) {
-        let pair = ManifestPair { name: (*name).clone(), before: take(&old, name), after: take(&new, name) };
-        let only_there = pair.before.is_none() && pair.after.is_some();
-        let damaged_before = broken && before.studies()?.contains(name) && pair.before.is_none();
-        let damaged_after = broken && after.studies()?.contains(name) && pair.after.is_none();
-        if damaged_before || damaged_after {
-            continue;
-        }
-        if only_there && options.leaves_out.is_some_and(|leaves_out| leaves_out(name)) {
-            comparison.remarks.push(format!("{name} is left out: git is told to ignore its results"));
-        } else {
-            pairs.push(pair);
-        }
-    }
+    let pair = |name: String| {
+        let mut unread = Vec::new();
+        let (before, after) = (take(&old, &name, &mut unread), take(&new, &name, &mut unread));
+        ManifestPair { name, renamed_from: None, before, after, unread }
+    };
+    let (left_out, mut pairs): (Vec<_>, Vec<_>) = names.into_iter().map(pair).partition(|pair| {
+        let only_there = pair.before.is_none() && pair.after.is_some() && pair.unread.is_empty();
+        only_there && options.leaves_out.is_some_and(|leaves_out| leaves_out(&pair.name))
+    });
+    let is_asked = |name: &String| options.studies.is_empty() || options.studies.contains(name);
+    let left_out = left_out.into_iter().filter(|pair| is_asked(&pair.name));
+    let remark = |pair: ManifestPair| format!("{} is left out: git is told to ignore its results", pair.name);
+    comparison.remarks.extend(left_out.map(remark));
+    renamed::join(&mut pairs);
+    // The folder of one study whose manifest cannot be read may be that of any.
+    let is_meant = |pair: &ManifestPair| {
+        is_asked(&pair.name) || pair.renamed_from.as_ref().is_some_and(is_asked) || pair.name.is_empty()
+    };
+    pairs.retain(is_meant);
     Ok(pairs)
 }
 
@@ -227,7 +252,8 @@ fn check_tolerances(pairs: &[ManifestPair], tolerances: &[Allowance]) -> Result<
                 }
             }
         }
-        if !found {
+        // A manifest that cannot be read may have it.
+        if !found && pairs.iter().all(|pair| pair.unread.is_empty()) {
             known.sort();
             known.dedup();
             let help = suggest(&allowance.name, known.iter().map(String::as_str).collect::<Vec<_>>());
@@ -244,9 +270,17 @@ fn check_tolerances(pairs: &[ManifestPair], tolerances: &[Allowance]) -> Result<
     Ok(remarks)
 }
 
+/// A study of which a manifest could not be read.
+fn unknown(name: &str, why: &[String]) -> StudyDiff {
+    // The folder of one study, whose manifest would have its name.
+    let name = if name.is_empty() { "a study without a name" } else { name };
+    let (remarks, state) = (why.to_vec(), Difference::Unknown);
+    StudyDiff { name: name.to_owned(), renamed_from: None, state, remarks, stages: Vec::new() }
+}
+
 fn one_sided(name: &str, manifest: &Manifest, state: Difference) -> StudyDiff {
     let stages = manifest.stages.iter().map(|stage| one_sided_stage(stage, state)).collect();
-    StudyDiff { name: name.to_owned(), state, remarks: Vec::new(), stages }
+    StudyDiff { name: name.to_owned(), renamed_from: None, state, remarks: Vec::new(), stages }
 }
 
 fn one_sided_stage(stage: &StageRecord, state: Difference) -> StageDiff {
@@ -290,6 +324,7 @@ struct Task<'a> {
     after: &'a Side,
     old: &'a (String, Manifest),
     new: &'a (String, Manifest),
+    renamed_from: Option<&'a str>,
     /// Tolerances of the study itself.
     own: Vec<Allowance>,
     options: &'a Options<'a>,
@@ -314,7 +349,8 @@ impl Task<'_> {
         }
         stages.extend(gone.into_iter().map(|stage| one_sided_stage(stage, Difference::Removed)));
         let state = Difference::of_parts(stages.iter().map(|stage| stage.state));
-        (StudyDiff { name: name.to_owned(), state, remarks: self.remarks(), stages }, found)
+        let renamed_from = self.renamed_from.map(str::to_owned);
+        (StudyDiff { name: name.to_owned(), renamed_from, state, remarks: self.remarks(), stages }, found)
     }
 
     /// What is to be known of the results themselves.

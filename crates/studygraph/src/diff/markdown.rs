@@ -31,6 +31,9 @@ pub fn text(comparison: &Comparison) -> String {
         });
         text += &table(["", "Verdict", "What", "Numbers", "Where"], rows);
     }
+    if comparison.studies.is_empty() {
+        comparison.problems.iter().for_each(|problem| text += &format!("\n{}\n", escaped(problem)));
+    }
     for study in &comparison.studies {
         text += &self::study(study);
     }

@@ -11,6 +11,7 @@ pub mod html;
 pub mod markdown;
 pub mod model;
 pub mod pretty;
+mod renamed;
 mod rows;
 mod source;
 pub mod table;

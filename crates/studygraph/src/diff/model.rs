@@ -13,6 +13,8 @@ pub enum Difference {
     #[default]
     Same,
     WithinTolerance,
+    /// It could not be compared.
+    Unknown,
     Changed,
     Removed,
     Added,
@@ -24,6 +26,7 @@ impl Difference {
         match self {
             Self::Same => "same",
             Self::WithinTolerance => "within tolerance",
+            Self::Unknown => "could not be compared",
             Self::Changed => "changed",
             Self::Removed => "removed",
             Self::Added => "added",
@@ -36,6 +39,7 @@ impl Difference {
         match self {
             Self::Same => "=",
             Self::WithinTolerance => "≈",
+            Self::Unknown => "?",
             Self::Changed => "≠",
             Self::Removed => "−",
             Self::Added => "+",
@@ -48,7 +52,7 @@ impl Difference {
         self >= Self::Changed
     }
 
-    /// Of what is made of several: changed as soon as one part differs.
+    /// Of what is made of several: changed as soon as one part differs, else unknown as soon as one is.
     #[must_use]
     pub fn of_parts(parts: impl Iterator<Item = Self>) -> Self {
         parts.max().unwrap_or(Self::Same).min(Self::Changed)
@@ -122,6 +126,8 @@ pub struct Flip {
 #[derive(Clone, Debug, Serialize)]
 pub struct StudyDiff {
     pub name: String,
+    /// The name of the study before: most of its tables are the same.
+    pub renamed_from: Option<String>,
     pub state: Difference,
     /// What is to be known of the results themselves: from another text of the study, of an earlier format.
     pub remarks: Vec<String>,

@@ -135,7 +135,8 @@ pub fn program(study: &StudyDiff) -> Option<String> {
 
 /// What is said of a study as a whole.
 pub fn remarks(study: &StudyDiff) -> Vec<String> {
-    study.remarks.iter().cloned().chain(program(study)).collect()
+    let renamed = study.renamed_from.as_ref().map(|name| format!("renamed from {name}"));
+    renamed.into_iter().chain(study.remarks.iter().cloned()).chain(program(study)).collect()
 }
 
 /// Stages that are told one by one.
@@ -324,6 +325,9 @@ pub fn keys(keys: &[Key], all: usize) -> String {
 
 /// `3 stages changed, 1 within tolerance, 8 the same`.
 pub fn sum(study: &StudyDiff) -> String {
+    if study.state == Difference::Unknown {
+        return study.state.word().to_owned();
+    }
     let number = |state: Difference| study.stages.iter().filter(|stage| stage.state == state).count();
     let states =
         [Difference::Changed, Difference::Added, Difference::Removed, Difference::WithinTolerance, Difference::Same];
@@ -352,11 +356,18 @@ pub fn verdict(comparison: &Comparison) -> String {
         0 => flips,
         many => format!("{flips}; {} damaged", count(many, "file")),
     };
+    let unknown = number(Difference::Unknown);
+    if unknown == comparison.studies.len() {
+        let what = if unknown == 0 { "the results".to_owned() } else { studies };
+        return format!("{what} could not be compared{flips}");
+    }
+    let flips = if unknown > 0 { format!("{flips}; {unknown} could not be compared") } else { flips };
     if differing > 0 {
         let verb = if differing == 1 { "differs" } else { "differ" };
         let of = if comparison.studies.len() == 1 { String::new() } else { format!("{differing} of ") };
         return format!("{of}{studies} {verb} beyond tolerance{flips}");
     }
+    let studies = if unknown > 0 { format!("{} of {studies}", comparison.studies.len() - unknown) } else { studies };
     match number(Difference::WithinTolerance) {
         0 => format!("{studies}, no difference{flips}"),
         _ => format!("{studies}, every difference within tolerance{flips}"),

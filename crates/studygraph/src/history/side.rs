@@ -12,7 +12,7 @@ use crate::store::bundle::Opened;
 use crate::store::cache::Cache;
 use crate::store::file;
 use crate::store::index;
-use crate::store::manifest::{FORMAT, FileRecord, Manifest, StageRecord, TableRecord};
+use crate::store::manifest::{AGAIN, FileRecord, Manifest, StageRecord, TableRecord};
 use crate::store::parquet;
 use crate::store::results::{Folder, Known, MANIFEST, held_text, here};
 use crate::table::data::Table;
@@ -45,7 +45,7 @@ enum Held {
     Table(Box<Table>),
     Absent,
     /// There, but git has its contents elsewhere: a phrase.
-    Elsewhere(&'static str),
+    Elsewhere(String),
     /// Not what the manifest says: a phrase that follows the file's name.
     Damaged(String),
 }
@@ -85,7 +85,7 @@ impl Side {
 
     fn read(&self, path: &Path, maximum: u64) -> Result<Option<Vec<u8>>, String> {
         match &self.source {
-            Source::Commit(files) => files.read(path),
+            Source::Commit(files) => files.read(path).map_err(|problem| format!("cannot be read: {problem}")),
             Source::Folder(folder) => match file::read(&folder.join(path), maximum) {
                 Ok(bytes) => Ok(Some(bytes)),
                 Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
@@ -133,13 +133,7 @@ impl Side {
         if let Some(pointer) = pointer(&bytes) {
             return Err(wrong(pointer));
         }
-        let manifest: Manifest =
-            serde_json::from_slice(&bytes).map_err(|error| wrong(&format!("is damaged: {error}")))?;
-        if manifest.is_known() {
-            Ok(Some(manifest))
-        } else {
-            Err(wrong(&format!("has format {}; this version reads formats 1 to {FORMAT}", manifest.format)))
-        }
+        Manifest::parse(&bytes).map(Some).map_err(|problem| wrong(&format!("is damaged: {problem}; {AGAIN}")))
     }
 
     /// A table of a study, checked against its manifest, and what is wrong with its file. Where the file is not kept or
@@ -169,12 +163,14 @@ impl Side {
             return Held::Damaged("lies elsewhere".to_owned());
         }
         let bytes = match self.read(&Path::new(study).join(&record.file), file::MOST_TABLE) {
+            // Git has all that a commit holds, here or elsewhere.
+            Err(problem) if matches!(self.source, Source::Commit(_)) => return Held::Elsewhere(problem),
             Err(problem) => return Held::Damaged(problem),
             Ok(None) => return Held::Absent,
             Ok(Some(bytes)) => bytes,
         };
         if let Some(pointer) = pointer(&bytes) {
-            return Held::Elsewhere(pointer);
+            return Held::Elsewhere(pointer.to_owned());
         }
         let place = format!("{study}/{}", record.file);
         let read = || parquet::read(bytes);
@@ -187,16 +183,18 @@ impl Side {
 
     /// The files of a table that are not the lines it holds.
     fn changed_files(&self, study: &str, record: &TableRecord, table: &Table) -> Vec<(String, String)> {
-        let changed = |file: &&String| match self.read(&Path::new(study).join(file), file::MOST_TABLE) {
-            Ok(Some(bytes)) => {
-                pointer(&bytes).is_none() && held_text(table, file).is_some_and(|text| text.as_bytes() != bytes)
+        let changed = |file: &String| match self.read(&Path::new(study).join(file), file::MOST_TABLE) {
+            Ok(Some(bytes)) if pointer(&bytes).is_none() => {
+                let text = held_text(table, file).filter(|text| text.as_bytes() != bytes)?;
+                let is_alike = index::differ_in_line_ends(&bytes, &index::digest(text.as_bytes()));
+                let other = || format!("is not what the table `{}` holds", record.name);
+                Some((file.clone(), if is_alike { index::LINE_ENDS.to_owned() } else { other() }))
             }
-            _ => false,
+            _ => None,
         };
-        let told = |file: &String| (file.clone(), format!("is not what the table `{}` holds", record.name));
         // A manifest from elsewhere may name anything.
         let here = |file: &&String| Path::new(file).file_name().is_some_and(|name| name == file.as_str());
-        record.files.iter().filter(here).filter(changed).map(told).collect()
+        record.files.iter().filter(here).filter_map(changed).collect()
     }
 
     /// Whether this file is there, whatever is in it.
@@ -243,12 +241,16 @@ impl Side {
     /// Why a listed file that is there is not the one that was written.
     fn changed(&self, study: &str, listed: &FileRecord, known: Option<&Known>) -> Option<String> {
         let bytes = match self.read(&Path::new(study).join(&listed.file), file::MOST_TABLE) {
+            Err(_) if matches!(self.source, Source::Commit(_)) => return None,
             Err(problem) => return Some(problem),
             Ok(bytes) => bytes.filter(|bytes| pointer(bytes).is_none())?,
         };
         let expected = known.and_then(|known| known.expected(&listed.file)).map(|(_, digest)| digest);
         let size = bytes.len() as u64;
         match (listed.bytes, expected.or(listed.digest.as_deref())) {
+            (_, Some(digest)) if index::digest(&bytes) != digest && index::differ_in_line_ends(&bytes, digest) => {
+                Some(index::LINE_ENDS.to_owned())
+            }
             (Some(expected), _) if size != expected => Some(format!("has {size} bytes; its manifest says {expected}")),
             (_, Some(digest)) if index::digest(&bytes) != digest => {
                 Some("has other bytes than were written".to_owned())

@@ -19,8 +19,8 @@ use crate::store::manifest::{
     Config, Described, FORMAT, KeyRecord, Manifest, OmissionRecord, Source, StageRecord, TableRecord,
 };
 use crate::store::parquet;
-use crate::study::Study;
 use crate::study::settings::Shown;
+use crate::study::{self, Study};
 use crate::table::data::Table;
 use crate::table::schema::Schema;
 use declare::digest::Digest;
@@ -208,7 +208,7 @@ impl Outcome {
             title: study.title.clone(),
             seed: study.seed,
             source,
-            study_digest: blake3::hash(study.text.as_bytes()).to_string(),
+            study_digest: study::digest(&study.text),
             seconds: self.seconds,
             stages: self.stages.iter_mut().map(|stage| stage.take_record(&mut described)).collect(),
             tolerances: study.tolerances.iter().map(|one| (one.name.clone(), one.text.clone())).collect(),

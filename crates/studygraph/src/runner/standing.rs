@@ -13,7 +13,7 @@ use crate::stage::Want;
 use crate::store::entry::StoredTable;
 use crate::store::manifest::{KeyRecord, Manifest, StageRecord, TableRecord};
 use crate::store::results::{FileState, Folder, Known, PAGE, is_drawn};
-use crate::study::{Node, Study};
+use crate::study::{self, Node, Study};
 use declare::digest::Digest;
 use declare::error::Diagnostic;
 
@@ -29,6 +29,8 @@ pub struct Standing {
     pub gone: Vec<String>,
     /// Page, figures and HDF5 file that are here, but not as the last run wrote them.
     pub foreign: Vec<String>,
+    /// Of these, texts of which the line ends alone differ.
+    pub line_ends: Vec<String>,
     /// Whether page and figures are those of the last run.
     pub report: bool,
 }
@@ -185,7 +187,7 @@ pub fn standing_of(study: &Study, known: Option<&Known>) -> Result<Standing, Dia
     let names: HashSet<&str> = study.nodes.iter().map(|node| node.name.as_str()).collect();
     let in_study = |stage: &&StageRecord| names.contains(stage.name.as_str());
     let of_manifest = manifest.iter().flat_map(|manifest| &manifest.stages);
-    let digest = blake3::hash(study.text.as_bytes()).to_string();
+    let digest = study::digest(&study.text);
     let tables = manifest.iter().flat_map(|manifest| &manifest.stages).flat_map(|stage| &stage.tables);
     let of_tables: HashSet<&String> = tables.flat_map(|table| table.files.iter().chain([&table.file])).collect();
     let others: Vec<(&str, FileState)> = known
@@ -194,17 +196,17 @@ pub fn standing_of(study: &Study, known: Option<&Known>) -> Result<Standing, Dia
         .filter(|(_, file)| !of_tables.contains(file))
         .map(|(known, file)| (file.as_str(), known.state(file)))
         .collect();
+    let foreign: Vec<String> =
+        others.iter().filter(|(_, state)| *state == FileState::Changed).map(|(file, _)| (*file).to_owned()).collect();
+    let is_alike = |file: &&String| known.is_some_and(|known| known.has_other_line_ends(file));
     let drawn = || others.iter().filter(|(file, _)| is_drawn(file));
     Ok(Standing {
         stages,
         has_results: manifest.is_some(),
         text_changed: manifest.is_some_and(|manifest| manifest.study_digest != digest),
         gone: of_manifest.filter(|stage| !in_study(stage)).map(|stage| stage.name.clone()).collect(),
-        foreign: others
-            .iter()
-            .filter(|(_, state)| *state == FileState::Changed)
-            .map(|(file, _)| (*file).to_owned())
-            .collect(),
+        line_ends: foreign.iter().filter(is_alike).cloned().collect(),
+        foreign,
         report: drawn().any(|(file, _)| *file == PAGE) && drawn().all(|(_, state)| *state == FileState::Intact),
     })
 }

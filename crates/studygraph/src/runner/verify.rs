@@ -23,7 +23,7 @@ use crate::store::archive::open::Archive;
 use crate::store::archive::{self, ArchiveError};
 use crate::store::bundle::Opened;
 use crate::store::cache::Cache;
-use crate::store::manifest::{FORMAT, Manifest, TableRecord};
+use crate::store::manifest::{Manifest, TableRecord};
 use crate::store::parquet;
 use crate::store::results::{Draw, MANIFEST};
 use crate::study::{self, LoadError};
@@ -95,7 +95,7 @@ impl Verification {
             counts[match table.diff.state {
                 Difference::Same => 0,
                 Difference::WithinTolerance => 1,
-                Difference::Changed | Difference::Removed | Difference::Added => 2,
+                Difference::Unknown | Difference::Changed | Difference::Removed | Difference::Added => 2,
             }] += 1;
         }
         counts
@@ -128,12 +128,9 @@ pub fn unpack<R: Read + Seek>(
     })?;
     let inside = archive::results(&study.name) + MANIFEST;
     let bytes = archive.bytes(&inside)?;
-    let manifest: Manifest =
-        serde_json::from_slice(&bytes).map_err(|error| archive.damaged(&inside, &error.to_string()))?;
-    let digest = blake3::hash(study.text.as_bytes()).to_string();
-    let problem = if !manifest.is_known() {
-        Some(format!("it has format {}; this program reads formats 1 to {FORMAT}", manifest.format))
-    } else if manifest.study != study.name || manifest.study_digest != digest {
+    let manifest = Manifest::parse(&bytes).map_err(|problem| archive.damaged(&inside, &problem))?;
+    let digest = study::digest(&study.text);
+    let problem = if manifest.study != study.name || manifest.study_digest != digest {
         Some(format!("it is not about the study `{name}` beside it"))
     } else if manifest.stages.iter().all(|stage| stage.tables.is_empty()) {
         Some("it lists no tables".to_owned())

@@ -62,6 +62,18 @@ pub struct Stamp {
     pub inode: u64,
 }
 
+/// A phrase that follows the name of a text of which git changed the line ends when it checked it out.
+pub const LINE_ENDS: &str = "is as it was written; only its line ends differ (git's autocrlf)";
+
+/// Whether bytes have a digest once their line ends are others, as `core.autocrlf` of git makes them.
+#[must_use]
+pub fn differ_in_line_ends(bytes: &[u8], expected: &str) -> bool {
+    let Ok(text) = std::str::from_utf8(bytes) else { return false };
+    let with_lf = text.replace("\r\n", "\n");
+    let is_expected = |text: &str| digest(text.as_bytes()) == expected;
+    is_expected(&with_lf) || is_expected(&with_lf.replace('\n', "\r\n"))
+}
+
 impl Index {
     /// With the files as they are in this folder now.
     #[must_use]

@@ -30,7 +30,7 @@ use super::bundle::{Opened, is_bundle};
 use super::error::StoreError;
 use super::file;
 use super::lock::{self, Lock, Told};
-use super::manifest::{FORMAT, Manifest, TableRecord};
+use super::manifest::{AGAIN, Manifest, TableRecord};
 use super::parquet;
 use crate::table::data::{Data, Table};
 
@@ -111,11 +111,8 @@ impl Folder {
             other => other.map_err(StoreError::io("read", &path))?,
         };
         let damaged = |problem: String| StoreError::Damaged { path: path.display().to_string(), problem };
-        let manifest: Manifest = serde_json::from_slice(&bytes).map_err(|error| damaged(error.to_string()))?;
-        if manifest.is_known() {
-            return Ok(Some((manifest, bytes)));
-        }
-        Err(damaged(format!("it has format {}; this program reads formats 1 to {FORMAT}", manifest.format)))
+        let manifest = Manifest::parse(&bytes).map_err(|problem| damaged(format!("{problem}; {AGAIN}")))?;
+        Ok(Some((manifest, bytes)))
     }
 
     /// A published table.

@@ -21,7 +21,7 @@ use crate::store::cache::Cache;
 use crate::store::error::StoreError;
 use crate::store::file::{self, Durability};
 use crate::store::shards::{self, Part};
-use crate::study::{Study, load_text};
+use crate::study::{self, Study, load_text};
 
 const FORMAT: u32 = 1;
 /// A part that is said to cost nothing costs its file.
@@ -140,7 +140,7 @@ impl ShardPlan {
         if plan.format != FORMAT {
             return Err(wrong(format!("it has format {}; this version reads format {FORMAT}", plan.format)));
         }
-        if blake3::hash(plan.text.as_bytes()).to_string() != plan.study_digest {
+        if study::digest(&plan.text) != plan.study_digest {
             return Err(wrong("the study in it is not the one that was planned".to_owned()));
         }
         plan.digest = blake3::hash(&bytes).to_string();
@@ -250,7 +250,7 @@ fn divided(
         dependencies: study.program.about.dependencies.to_owned(),
         study: study.name.clone(),
         path: study.path.clone(),
-        study_digest: blake3::hash(study.text.as_bytes()).to_string(),
+        study_digest: study::digest(&study.text),
         text: study.text.clone(),
         only: options.only.clone(),
         want: options.wanted.iter().map(written).collect(),

@@ -189,6 +189,16 @@ impl Known {
         if good { FileState::Intact } else { FileState::Changed }
     }
 
+    /// Whether a changed file differs in its line ends alone: git made them others when it checked the file out.
+    #[must_use]
+    pub fn has_other_line_ends(&self, file: &str) -> bool {
+        let Some((_, digest)) = self.expected(file).filter(|_| self.state(file) == FileState::Changed) else {
+            return false;
+        };
+        let bytes = file::read(&self.folder.path().join(file), file::MOST_TABLE);
+        bytes.is_ok_and(|bytes| index::differ_in_line_ends(&bytes, digest))
+    }
+
     /// Listed files that are there, but not as they were written, whatever they are.
     #[must_use]
     pub fn changed(&self) -> Vec<String> {

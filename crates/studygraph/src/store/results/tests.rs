@@ -11,7 +11,7 @@ use crate::store::facts::Facts;
 #[cfg(feature = "hdf5")]
 use crate::store::hdf5;
 use crate::store::index::{INDEX, Index};
-use crate::store::manifest::{FileRecord, StageRecord};
+use crate::store::manifest::{FORMAT, FileRecord, StageRecord};
 use crate::store::parquet::tests::{assert_identical, everything};
 use crate::table::schema::Schema;
 
