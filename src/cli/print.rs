@@ -4,7 +4,6 @@ use comfy_table::{Cell as DrawnCell, CellAlignment, ContentArrangement, Row, Tab
 use serde_json::{Map, Value, json};
 
 use super::arguments::Format;
-use declare::text::visible;
 use studygraph::diff::markdown::escaped;
 use studygraph::store::csv::{Dialect, heading, write_cells};
 use studygraph::table::data::{Cell, Table};
@@ -101,14 +100,14 @@ impl Grid<'_> {
     /// `width` is that of a terminal; elsewhere there is room for all.
     fn pretty_in(&self, width: Option<u16>) -> String {
         let rows: Vec<Vec<String>> =
-            (0..self.rows).map(|row| self.row(row).map(|cell| seen(&shown(cell.as_ref()))).collect()).collect();
+            (0..self.rows).map(|row| self.row(row).map(|cell| shown(cell.as_ref())).collect()).collect();
         let fitting = width.map_or(self.columns.len(), |width| self.fitting(&rows, usize::from(width)));
         let mut drawn = Drawn::new();
         drawn.load_style(presets::UTF8_BORDERS_ONLY).set_content_arrangement(ContentArrangement::Dynamic);
         if let Some(width) = width {
             drawn.set_width(width);
         }
-        drawn.set_header(self.columns[..fitting].iter().map(|column| seen(&column.shown)));
+        drawn.set_header(self.columns[..fitting].iter().map(|column| &column.shown));
         for row in &rows {
             let cell = |(text, column): (&String, &Heading)| {
                 let align = if column.is_number { CellAlignment::Right } else { CellAlignment::Left };
@@ -186,11 +185,6 @@ impl Grid<'_> {
         }
         text
     }
-}
-
-/// A text in which everything can be seen.
-fn seen(text: &str) -> String {
-    visible(text).into_owned()
 }
 
 /// A number with eight significant digits and no trailing zeros; the exact value is in the CSV and the JSON.

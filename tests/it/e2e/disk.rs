@@ -117,6 +117,15 @@ fn what_is_gone_and_what_came_in_is_told_by_name() {
     fs::create_dir_all(desk.path("results/empty")).unwrap();
     fs::write(desk.path("quick.yaml"), text.replacen("study: quick", "study: other", 1)).unwrap();
     desk.run(&["run", "--quiet", "quick.yaml"], 0);
+    // With the same tables it would be the same study under another name.
+    let path = desk.path("results/other/manifest.json");
+    let mut manifest: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    for stage in manifest["stages"].as_array_mut().unwrap() {
+        for table in stage["tables"].as_array_mut().unwrap() {
+            table["content"] = "0".repeat(32).into();
+        }
+    }
+    fs::write(&path, serde_json::to_vec(&manifest).unwrap()).unwrap();
     let gone = verdicts(&json(&desk, &[], 4));
     assert!(
         !gone.is_empty() && gone.iter().all(|flip| flip["after"].is_null() && flip["study"] == "quick"),

@@ -6,7 +6,6 @@ use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle
 
 use super::model::{Comparison, Difference, StageDiff, TableDiff};
 use super::words;
-use declare::text::visible;
 
 /// Of the worst rows, so many: every table has some.
 const SHOWN: usize = 3;
@@ -56,7 +55,7 @@ pub fn text(comparison: &Comparison, width: u16) -> String {
     }
     page.blank();
     page.wrap("", &words::verdict(comparison));
-    visible(&page.text).into_owned()
+    page.text
 }
 
 struct Page {
