@@ -178,6 +178,12 @@ pub fn declaration(field: &Field, marks: &Marks, ident: &Ident) -> Result<Declar
     if let Some(text) = &marks.example {
         declared = quote!(#declared.example(#text));
     }
+    if let Some(field) = &marks.counts_in {
+        declared = quote!(#declared.counts_in(#field));
+    }
+    if let Some(remedy) = &marks.negative {
+        declared = quote!(#declared.negative(#remedy));
+    }
     if marks.range {
         declared = quote!(#declared.range());
     }

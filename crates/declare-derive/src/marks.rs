@@ -14,6 +14,10 @@ pub struct Marks {
     pub default: Option<LitStr>,
     /// What a study might say.
     pub example: Option<LitStr>,
+    /// The field in whose quantity a plain number counts.
+    pub counts_in: Option<LitStr>,
+    /// The remedy for a negative value.
+    pub negative: Option<LitStr>,
     pub axis: Option<Expr>,
     pub multiple: Option<Expr>,
     /// Of which kinds the stage is that is named.
@@ -43,6 +47,8 @@ impl Marks {
                     "dimension" => marks.dimension = Some(meta.value()?.parse()?),
                     "default" => marks.default = Some(meta.value()?.parse()?),
                     "example" => marks.example = Some(meta.value()?.parse()?),
+                    "counts_in" => marks.counts_in = Some(meta.value()?.parse()?),
+                    "negative" => marks.negative = Some(meta.value()?.parse()?),
                     "axis" => marks.axis = Some(meta.value()?.parse()?),
                     "multiple" => marks.multiple = Some(meta.value()?.parse()?),
                     "kinds" | "intervals" => {
@@ -60,7 +66,8 @@ impl Marks {
                     "flatten" => marks.flatten = true,
                     _ => {
                         return Err(meta.error(
-                            "it is `minimum`, `maximum`, `multiple`, `dimension`, `default`, `example`, `axis`, \
+                            "it is `minimum`, `maximum`, `multiple`, `dimension`, `default`, `example`, `counts_in`, \
+                             `negative`, `axis`, \
                              `range`, `chooses`, `kinds`, `intervals`, `overrides`, `varies`, `name` or `flatten`",
                         ));
                     }

@@ -159,7 +159,10 @@ impl From<Faults> for Failure {
     }
 }
 
-/// The known name nearest to `name`, when it is near enough to be a likely slip.
+/// The known name nearest to `name`, when it is near enough to be a likely slip of the pen.
+///
+/// A name says what its words say: one with a word that the candidate lacks means something else (`gear_torque` is no slip of
+/// `torque`), and so does one with another number or an opposite word. Words of the candidate may be left out.
 #[must_use]
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let mut best: Option<(f64, &str)> = None;
@@ -168,11 +171,94 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
             // A name that is a word of a longer one (`addendum` of `addendum_coefficient`) is a likely slip too.
             if !name.is_empty() && candidate.split('_').any(|word| word == name) { 0.7 } else { 0.0 },
         );
-        if likeness >= 0.5 && best.is_none_or(|(so_far, _)| likeness > so_far) {
+        if likeness >= 0.5 && best.is_none_or(|(so_far, _)| likeness > so_far) && may_mean(name, candidate) {
             best = Some((likeness, candidate));
         }
     }
     best.map(|(_, candidate)| candidate)
+}
+
+/// Words that are alike and mean the opposite of each other.
+const OPPOSITES: &[[&str; 2]] = &[
+    ["minimum", "maximum"],
+    ["min", "max"],
+    ["least", "largest"],
+    ["inner", "outer"],
+    ["input", "output"],
+    ["driver", "driven"],
+    ["driving", "driven"],
+    ["upper", "lower"],
+    ["before", "after"],
+    ["radius", "radial"],
+    ["tip", "top"],
+];
+
+/// Whether `name` may be a slip for `candidate`: every word of it is one of the candidate's, but for a slip.
+fn may_mean(name: &str, candidate: &str) -> bool {
+    let digits = |text: &str| text.chars().filter(char::is_ascii_digit).collect::<String>();
+    if digits(name) != digits(candidate) {
+        return false;
+    }
+    let joined =
+        |text: &str| text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect::<String>();
+    let (whole, other) = (joined(name), joined(candidate));
+    let (words, others) = (words(name), words(candidate));
+    let is_opposite = |one: &str, two: &str| OPPOSITES.contains(&[one, two]) || OPPOSITES.contains(&[two, one]);
+    if words.iter().any(|word| !others.contains(word) && others.iter().any(|other| is_opposite(word, other))) {
+        return false;
+    }
+    // One short word for another one.
+    if words.len() == 1 && others.len() == 1 && other.len() < 6 {
+        return strsim::damerau_levenshtein(&whole, &other) <= 2;
+    }
+    // Words run together, or divided elsewhere.
+    if strsim::damerau_levenshtein(&whole, &other) <= slips(other.len()).min(1) {
+        return true;
+    }
+    // A whole name with something before or behind it.
+    if other.len() > 2 && whole.contains(&other) && whole.len() >= other.len() + 3 {
+        return false;
+    }
+    let is_there = |word: &String| others.iter().any(|other| word == other || is_slip(word, other));
+    words.iter().all(is_there)
+}
+
+/// Letters that a slip of a word of so many may have.
+fn slips(length: usize) -> usize {
+    match length {
+        0..=1 => 0,
+        2..=5 => 1,
+        6..=7 => 2,
+        _ => length / 4,
+    }
+}
+
+fn is_slip(word: &str, other: &str) -> bool {
+    let longest = word.chars().count().max(other.chars().count());
+    // A whole word with another one behind it.
+    if other.len() > 2 && word.contains(other) && word.len() >= other.len() + 3 {
+        return false;
+    }
+    let is_abbreviation = word.len() >= 3 && other.starts_with(word);
+    is_abbreviation || strsim::damerau_levenshtein(word, other) <= slips(longest)
+}
+
+/// The words of a name, in small letters: `faceWidth`, `face-width` and `face_width` have two.
+fn words(name: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut was_small = false;
+    for letter in name.chars() {
+        let is_new = !letter.is_alphanumeric() || (letter.is_uppercase() && was_small);
+        if is_new {
+            words.push(String::new());
+        }
+        was_small = letter.is_lowercase();
+        if letter.is_alphanumeric() {
+            words.last_mut().into_iter().for_each(|word| word.extend(letter.to_lowercase()));
+        }
+    }
+    words.retain(|word| !word.is_empty());
+    words
 }
 
 /// Names that a message lists at most.
@@ -194,4 +280,54 @@ pub fn suggest<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone)
         names.push(format!("and {more} more"));
     }
     format!("known here: {}", names.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slips_of_the_pen_are_found() {
+        for (name, known) in [
+            ("facewidth", "face_width"),
+            ("faceWidth", "face_width"),
+            ("Face-Width", "face_width"),
+            ("face_with", "face_width"),
+            ("preasure_angle", "pressure_angle"),
+            ("torqe", "torque"),
+            ("tooth", "teeth"),
+            ("pear", "pair"),
+            ("nn", "nm"),
+            ("ammount", "amount"),
+            ("profile_shfit", "profile_shift"),
+            ("addendum", "addendum_coefficient"),
+        ] {
+            assert_eq!(nearest(name, ["bore", known, "other"]), Some(known), "{name}");
+        }
+    }
+
+    /// Tier: invariant; a name with one word more, another number or an opposite word means something else.
+    #[test]
+    fn no_name_is_offered_across_a_change_of_meaning() {
+        for (name, known) in [
+            ("gear_torque", "torque"),
+            ("torque_gear", "torque"),
+            ("geartorque", "torque"),
+            ("gearTorque", "torque"),
+            ("torque2", "torque"),
+            ("torque_2", "torque_1"),
+            ("min_torque", "max_torque"),
+            ("minimum", "maximum"),
+            ("base_radius", "bore_radius"),
+            ("root_radius", "tip_radius"),
+            ("driven_torque", "driving_torque"),
+            ("input_speed", "output_speed"),
+            ("tip_relief", "root_relief"),
+            ("left_flank", "flank"),
+            ("ringpair", "pair"),
+            ("crossover_inner", "crossover_index"),
+        ] {
+            assert_eq!(nearest(name, [known]), None, "{name}");
+        }
+    }
 }

@@ -104,6 +104,10 @@ pub struct Field {
     pub summary: &'static str,
     /// What a study might say, of the size that is usual; where there is a default, that is one.
     pub example: Option<&'static str>,
+    /// Of a plain number that counts in a quantity of the study: the field that has it, such as the module.
+    pub counts_in: Option<&'static str>,
+    /// What a negative value would mean where none is taken: the remedy; empty where there is none.
+    pub negative: &'static str,
 }
 
 /// How many fields are in several tables together.
@@ -156,6 +160,8 @@ impl Field {
             intervals: &[],
             summary,
             example: None,
+            counts_in: None,
+            negative: "",
         }
     }
 
@@ -222,6 +228,20 @@ impl Field {
     #[must_use]
     pub const fn example(mut self, text: &'static str) -> Self {
         self.example = Some(text);
+        self
+    }
+
+    /// The number counts in the quantity of this field.
+    #[must_use]
+    pub const fn counts_in(mut self, field: &'static str) -> Self {
+        self.counts_in = Some(field);
+        self
+    }
+
+    /// The remedy for a negative value.
+    #[must_use]
+    pub const fn negative(mut self, remedy: &'static str) -> Self {
+        self.negative = remedy;
         self
     }
 

@@ -3,10 +3,12 @@
 //! Decimal prefixes are applied to the decimal text, not to the binary number, so `0.00781 mm` and `7.81 um` are the
 //! same bits and give the same cache key. Must not know: which field of a study a quantity belongs to.
 
+mod foreign;
 mod written;
 
 use std::f64::consts::PI;
 
+pub use foreign::{ForeignUnit, foreign_quantity, foreign_unit, with_powers};
 pub use written::parse_unit;
 
 /// Exponents of metre, kilogram, second and radian.

@@ -4,6 +4,7 @@
 
 use crate::about::About;
 use crate::stage::Kind;
+use declare::units::Quantity;
 use declare::work::Counter;
 
 /// A word that users of other programs and other textbooks know for a field of this one.
@@ -14,6 +15,21 @@ pub struct Foreign {
     pub field: Option<&'static str>,
     /// What else is to be said: that a radius is half of the diameter, or why there is no such thing.
     pub remark: &'static str,
+    /// Whether the field has another quantity, to which the remark says the way.
+    pub is_other: bool,
+    /// What to write in the field, where the numbers of the study tell.
+    pub remedy: Option<fn(&Around) -> Option<String>>,
+}
+
+/// Numbers of a study around a word that is no field.
+#[derive(Clone, Copy)]
+pub struct Around<'a> {
+    /// The number of the word itself.
+    pub value: Option<Quantity>,
+    /// The number of a name beside it.
+    pub beside: &'a dyn Fn(&str) -> Option<Quantity>,
+    /// The number at the end of these names in any stage; none where stages differ.
+    pub anywhere: &'a dyn Fn(&[&str]) -> Option<Quantity>,
 }
 
 /// A field of a kind of stage that names what is in tables: for editors, to which a text is a text otherwise.

@@ -115,10 +115,10 @@ struct Values {
     #[declared(minimum = 4.0, maximum = 10_000.0, axis = usize::MAX, example = "36")]
     pub gear_teeth: Option<Vec<f64>>,
     /// Profile shift coefficient of the pinion.
-    #[declared(minimum = -2.0, maximum = 3.0, axis = usize::MAX, example = "0.2")]
+    #[declared(minimum = -2.0, maximum = 3.0, axis = usize::MAX, example = "0.2", counts_in = "module")]
     pub pinion_shift: Option<Vec<f64>>,
     /// Profile shift coefficient of the gear.
-    #[declared(minimum = -2.0, maximum = 3.0, axis = usize::MAX, example = "0.2")]
+    #[declared(minimum = -2.0, maximum = 3.0, axis = usize::MAX, example = "0.2", counts_in = "module")]
     pub gear_shift: Option<Vec<f64>>,
     /// Pressure angle of the basic rack.
     #[declared(minimum = 0.08, maximum = FRAC_PI_4, dimension = ANGLE, axis = usize::MAX, example = "20 deg")]

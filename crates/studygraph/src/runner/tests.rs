@@ -28,7 +28,7 @@ use crate::study::{Node, Study};
 use crate::table::data::{Row, Table};
 use crate::table::schema::{Column, Schema};
 use declare::error::{Failure, Faults, Place};
-use declare::parameter::{Field, Presence, Shape, Span};
+use declare::parameter::Field;
 use declare::record::{PlacedValue, Record, Value};
 
 /// How often each counter was run.
@@ -61,16 +61,7 @@ impl Drop for Company {
 }
 
 const fn axis(chunk: usize) -> Field {
-    Field {
-        name: "torque",
-        shape: Shape::Number { minimum: 0.0, maximum: 1e9 },
-        presence: Presence::Required,
-        span: Span::Axis { chunk },
-        chooses: false,
-        intervals: &[],
-        summary: "",
-        example: Some("3"),
-    }
+    Field::number("torque", 0.0, 1e9, "").axis(chunk).example("3")
 }
 
 const fn kind(name: &'static str, fields: &'static [Field]) -> Kind {

@@ -7,9 +7,9 @@
 use super::characters::check_merged;
 use super::conditions::{Condition, TOOTH, average, chosen, is_mark, is_same, marks};
 use super::document::{Content, KeyValue, Node, parse};
-use super::words::quote;
+use super::words::{self, quote};
 use declare::error::{Diagnostic, Place, nearest};
-use declare::units::{UnitError, parse_unit, symbols};
+use declare::units::{ForeignUnit, UnitError, foreign_unit, parse_unit, symbols, with_powers};
 
 /// One cell of a line.
 #[derive(Clone, Copy)]
@@ -287,8 +287,18 @@ fn column<'a>(cell: Cell<'a>, conditions: &[Condition]) -> Result<Column<'a>, Di
         Ok(_) => Ok(Column { name, unit: Some(unit), is_key: false }),
         Err(UnitError::Unknown(symbol)) => {
             let found = wrong(format!("unknown unit {} of the column {}", quote(&symbol), quote(name.text)));
-            Err(match nearest(&symbol, symbols()) {
-                Some(near) => found.help(format!("did you mean `{near}`?")),
+            let converted = || {
+                Some(match foreign_unit(unit)? {
+                    ForeignUnit::Of(factor, own) => {
+                        format!("convert the numbers to `{own}`: 1 {unit} is {} {own}", words::number(factor))
+                    }
+                    ForeignUnit::None(why) => why.to_owned(),
+                })
+            };
+            let near = || nearest(&symbol, symbols()).map(|near| format!("did you mean `{near}`?"));
+            let help = with_powers(unit).map(|powers| format!("write `[{powers}]`")).or_else(converted).or_else(near);
+            Err(match help {
+                Some(help) => found.help(help),
                 None => found,
             })
         }

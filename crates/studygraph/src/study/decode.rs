@@ -8,12 +8,13 @@ use super::overrides::{self, Stages};
 use super::quantity::interval::Interval;
 use super::quantity::{Measure, any_quantity};
 use super::varied;
+use super::whole::integer;
 use super::words::{self, alternatives, quote};
-use super::{files, notation, unknown};
+use super::{files, unknown};
 use declare::error::{Diagnostic, Place, suggest};
 use declare::parameter::{Field, Member, Presence, Shape, Span};
 use declare::record::{PlacedValue, Record, Value, Variant};
-use declare::units::{parse_unit, split_quantity};
+use declare::units::{LENGTH, parse_quantity};
 
 /// The name of a stage that a field refers to.
 #[derive(Clone, Debug)]
@@ -39,6 +40,8 @@ pub struct Decoder<'a> {
     /// All stages as written, for fields that override those of another one.
     stages: Stages<'a>,
     chooses: bool,
+    /// The lengths of the mappings around, in SI: what plain numbers below may count in.
+    lengths: Vec<(&'static str, f64)>,
 }
 
 /// A mapping whose fields are read, and how it is called in messages.
@@ -53,7 +56,16 @@ struct Owner<'a> {
 impl<'a> Decoder<'a> {
     pub fn new(ranges_belong: &'a str, stages: Stages<'a>) -> Self {
         let (references, intervals, faults) = (Vec::new(), Vec::new(), Vec::new());
-        Self { references, intervals, marks_intervals: false, faults, ranges_belong, stages, chooses: false }
+        Self {
+            references,
+            intervals,
+            marks_intervals: false,
+            faults,
+            ranges_belong,
+            stages,
+            chooses: false,
+            lengths: Vec::new(),
+        }
     }
 
     /// Reads the fields of a mapping called `label` that stands at `place`; `others` are keys that somebody else reads.
@@ -92,11 +104,13 @@ impl<'a> Decoder<'a> {
             let field = |name: &str| fields.iter().find(|field| field.name == name);
             let distance =
                 |name: &str, text: &str| field(name).map(Measure::of).map_or(0.0, |measure| measure.distance(text));
-            wrong = unknown::fields(pairs, &known, label, self.stages.foreign, &distance);
+            wrong = unknown::fields(pairs, &known, label, self.stages, &distance);
         }
         // What is missing may stand under another name, or in a file that is not there.
         let has_file = pairs.iter().any(|pair| is_file(fields, &pair.key));
         let is_renamed = !wrong.is_empty() || has_file;
+        let around = self.lengths.len();
+        self.lengths.extend(pairs.iter().filter_map(|pair| length(fields, pair)));
         let mut record = Record { fields: Vec::with_capacity(fields.len()), place };
         for field in fields {
             let is_missing = || !pairs.iter().any(|pair| pair.key == field.name);
@@ -116,6 +130,7 @@ impl<'a> Decoder<'a> {
                 Err(found) => wrong.push(found),
             }
         }
+        self.lengths.truncate(around);
         self.all_right(record, wrong)
     }
 
@@ -186,18 +201,20 @@ impl<'a> Decoder<'a> {
         }
         let value = match shape {
             Shape::Quantity { .. } | Shape::Number { .. } => {
-                let measure = Measure::new(name, shape, example);
+                let of = |unit: &str| self.lengths.iter().rev().find(|(name, _)| *name == unit).map(|(_, si)| *si);
+                let measure = Measure::new(name, shape, example).counting(field, of);
                 if let Some(interval) = if is_single(field) { measure.interval(node)? } else { None } {
                     let value = measure.number(interval.middle);
                     let place = if self.marks_intervals { varied::mark(self.intervals.len()) } else { node.place };
                     self.intervals.push(interval);
                     return Ok(PlacedValue { value, place });
                 }
-                measure.value(node, field.span, self.ranges())?
+                measure.value(node, field.span, self.ranges()).map_err(|wrong| negative(field, node, wrong))?
             }
             Shape::AnyQuantity => any_quantity(name, node)?,
             Shape::Integer { minimum, maximum, multiple } => {
-                Value::Integer(integer(name, node, shape, (*minimum, *maximum), *multiple)?)
+                let read = integer(name, node, shape, (*minimum, *maximum), *multiple);
+                Value::Integer(read.map_err(|wrong| negative(field, node, wrong))?)
             }
             Shape::Flag => match plain(node) {
                 Some("true" | "True" | "TRUE") => Value::Flag(true),
@@ -317,6 +334,20 @@ impl<'a> Decoder<'a> {
     }
 }
 
+/// The remedy for a negative value, where the field has one.
+fn negative(field: &Field, node: &Node, wrong: Diagnostic) -> Diagnostic {
+    let is_negative = plain(node).is_some_and(|text| text.starts_with('-')) && wrong.help.is_none();
+    if is_negative && !field.negative.is_empty() { wrong.help(field.negative) } else { wrong }
+}
+
+/// A length that stands in a mapping by itself.
+fn length(fields: &'static [Field], pair: &KeyValue) -> Option<(&'static str, f64)> {
+    let is_length = |field: &&Field| matches!(field.shape, Shape::Quantity { dimension: LENGTH, .. });
+    let field = fields.iter().find(|field| field.name == pair.key).filter(is_length)?;
+    let read = parse_quantity(plain(&pair.node)?).ok().filter(|read| read.dimension == LENGTH)?;
+    Some((field.name, read.value))
+}
+
 /// Whether each number that a field has stands by itself, in no list and on no axis.
 pub(super) fn is_single(field: &Field) -> bool {
     let mut shape = &field.shape;
@@ -381,67 +412,9 @@ pub(super) fn scalar<'n>(name: &str, node: &'n Node, shape: &Shape) -> Result<&'
 }
 
 /// The text of a scalar without quotes.
-fn plain(node: &Node) -> Option<&str> {
+pub(super) fn plain(node: &Node) -> Option<&str> {
     match &node.content {
         Content::Scalar { text, quoted: false } => Some(text),
         _ => None,
     }
-}
-
-pub(super) fn integer(
-    name: &str,
-    node: &Node,
-    shape: &Shape,
-    (minimum, maximum): (i64, i64),
-    multiple: i64,
-) -> Result<i64, Diagnostic> {
-    let text = scalar(name, node, shape)?;
-    let shown = quote(text);
-    let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
-    let other = notation::help(text);
-    if plain(node).is_none() || other.is_some() || !is_digits(digits) {
-        let (number, unit) = split_quantity(text);
-        let has_unit = !number.is_empty() && !unit.is_empty() && parse_unit(unit).is_ok();
-        let how = match plain(node) {
-            None => "without quotes",
-            Some(_) if has_unit && other.is_none() => "without a unit",
-            Some(_) => "in digits",
-        };
-        let wrong =
-            Diagnostic::new(format!("{} must be a whole number {how}, not {shown}", quote(name))).at(node.place);
-        if let Some(help) = other {
-            return Err(wrong.help(help));
-        }
-        // Only where all of the text is understood is it known which number is meant.
-        let whole = number.parse::<f64>().ok().filter(|_| unit.is_empty() || has_unit);
-        let whole = whole.filter(|value| value.fract() == 0.0 && value.abs() < 1e15);
-        return Err(match whole {
-            Some(value) => wrong.help(format!("write `{value}`")),
-            None => wrong,
-        });
-    }
-    let read = text.parse::<i64>();
-    if let Ok(value) = read
-        && (minimum..=maximum).contains(&value)
-        && value % multiple == 0
-    {
-        return Ok(value);
-    }
-    // A number that no computer word holds needs both bounds said, even where they are those of the word.
-    let admissible = words::integer_range(minimum, maximum).filter(|_| read.is_ok());
-    let admissible = admissible.unwrap_or_else(|| format!("between {minimum} and {maximum}"));
-    if multiple == 1 {
-        return Err(Diagnostic::new(format!("{} must be {admissible}, not {shown}", quote(name))).at(node.place));
-    }
-    let message = format!("{} must be {} {admissible}, not {shown}", quote(name), words::integer(multiple));
-    let wrong = Diagnostic::new(message).at(node.place);
-    let Ok(value) = read else { return Err(wrong) };
-    let below = value.clamp(minimum, maximum).div_euclid(multiple) * multiple;
-    let nearest = if below < value && below < maximum { vec![below, below + multiple] } else { vec![below] };
-    let nearest: Vec<String> = nearest.iter().map(i64::to_string).collect();
-    Err(wrong.help(format!("write {}", alternatives(nearest.iter().map(String::as_str)))))
-}
-
-fn is_digits(text: &str) -> bool {
-    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
 }

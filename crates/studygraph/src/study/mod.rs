@@ -37,6 +37,7 @@ mod structure;
 mod tests;
 mod unknown;
 mod varied;
+mod whole;
 mod words;
 
 use std::fmt;

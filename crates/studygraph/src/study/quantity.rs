@@ -4,16 +4,18 @@
 //! an axis given by `from`, `to` and `count` and the same point written out. Results in SI. Must not know: stages.
 
 pub mod interval;
+mod unreadable;
 
 use super::decode::scalar;
 use super::document::{Content, Node};
 use super::notation;
+use super::overrides::Stages;
 use super::unknown;
 use super::words::{self, quote};
-use declare::error::{Diagnostic, suggest};
+use declare::error::Diagnostic;
 use declare::parameter::{Field, Shape, Span};
 use declare::record::{PlacedValue, Value};
-use declare::units::{self, Dimension, RATIO, UnitError, parse_quantity, split_quantity};
+use declare::units::{Dimension, RATIO, UnitError, parse_quantity, split_quantity};
 
 /// Points of an axis.
 const MOST_POINTS: usize = 100_000;
@@ -29,21 +31,26 @@ pub struct Measure<'a> {
     pub maximum: f64,
     /// What a study might say, for messages.
     pub example: Option<&'static str>,
+    /// Of a plain number: the field in whose quantity it counts, and that quantity in SI where the study has it.
+    pub counts_in: Option<(&'static str, Option<f64>)>,
 }
 
 impl<'a> Measure<'a> {
     /// What the shape of a field says of a number.
     pub fn new(name: &'a str, shape: &Shape, example: Option<&'static str>) -> Self {
-        match *shape {
-            Shape::Quantity { dimension, minimum, maximum } => {
-                Self { name, dimension: Some(dimension), minimum, maximum, example }
-            }
-            Shape::Number { minimum, maximum } => Self { name, dimension: None, minimum, maximum, example },
-            Shape::Integer { minimum, maximum, .. } => {
-                Self { name, dimension: None, minimum: minimum as f64, maximum: maximum as f64, example }
-            }
-            _ => Self { name, dimension: None, minimum: f64::NEG_INFINITY, maximum: f64::INFINITY, example },
-        }
+        let (dimension, minimum, maximum) = match *shape {
+            Shape::Quantity { dimension, minimum, maximum } => (Some(dimension), minimum, maximum),
+            Shape::Number { minimum, maximum } => (None, minimum, maximum),
+            Shape::Integer { minimum, maximum, .. } => (None, minimum as f64, maximum as f64),
+            _ => (None, f64::NEG_INFINITY, f64::INFINITY),
+        };
+        Self { name, dimension, minimum, maximum, example, counts_in: None }
+    }
+
+    /// Of a field whose number may count in the quantity of another one, as `of` finds it.
+    #[must_use]
+    pub fn counting(self, field: &Field, of: impl Fn(&str) -> Option<f64>) -> Self {
+        Self { counts_in: field.counts_in.map(|name| (name, of(name))), ..self }
     }
 
     /// The same of a field.
@@ -108,10 +115,7 @@ impl<'a> Measure<'a> {
         match self.dimension {
             None if read.has_unit => {
                 let message = format!("{shown} has a unit; {} is a plain number", quote(self.name));
-                // 5 % is 0.05; of another unit the number alone is what was most likely meant.
-                let number = split_quantity(text).0;
-                let plain = if read.dimension == RATIO { read.value.to_string() } else { number.to_owned() };
-                return Err(Diagnostic::new(message).help(format!("write `{plain}`")));
+                return Err(Diagnostic::new(message).help(self.without_unit(text, read)));
             }
             Some(dimension) if dimension != RATIO && !read.has_unit => {
                 let number = split_quantity(text).0;
@@ -129,44 +133,6 @@ impl<'a> Measure<'a> {
         }
         // Adding zero turns a negative zero, the same value with other bits, into zero.
         if (self.minimum..=self.maximum).contains(&read.value) { Ok(read.value + 0.0) } else { Err(self.outside(text)) }
-    }
-
-    fn unreadable(&self, text: &str, error: UnitError) -> Diagnostic {
-        let shown = quote(text);
-        match error {
-            UnitError::Unknown(symbol) => {
-                let message = format!("unknown unit {} in {shown}; {} is expected", quote(&symbol), self.expected());
-                let own = self.dimension.map_or::<&[&str], _>(&[], |dimension| dimension.describe().1);
-                Diagnostic::new(message).help(match declare::error::nearest(&symbol, units::symbols()) {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => suggest(&symbol, own.iter().copied()),
-                })
-            }
-            UnitError::Malformed { unit, why, instead } => {
-                let message = format!(
-                    "{} in {shown} cannot be read as a unit: {why}; {} is expected",
-                    quote(&unit),
-                    self.expected()
-                );
-                Diagnostic::new(message).help(words::unit_instead(text, instead.as_deref()))
-            }
-            UnitError::Ambiguous { unit, readings } => {
-                let message =
-                    format!("{} in {shown} can be read in two ways; {} is expected", quote(&unit), self.expected());
-                Diagnostic::new(message).help(words::unit_readings(text, &readings, self.dimension))
-            }
-            UnitError::NotFinite => {
-                Diagnostic::new(format!("{shown} is too large a number; {} is expected", self.expected()))
-            }
-            UnitError::NotANumber(_) | UnitError::Missing => {
-                let endless = matches!(
-                    text.trim_start_matches(['+', '-', '.']).to_ascii_lowercase().as_str(),
-                    "nan" | "inf" | "infinity"
-                );
-                let is = if endless { "is not finite" } else { "is not a number" };
-                Diagnostic::new(format!("{shown} {is}; {} is expected", self.expected()))
-            }
-        }
     }
 
     /// How far a number, or the middle of an interval, is from the usual one, as the logarithm of their ratio: without end where it cannot stand here.
@@ -231,7 +197,9 @@ impl<'a> Measure<'a> {
         };
         let names = ["from", "to", "count"];
         if let Some(wrong) =
-            unknown::fields(pairs, &names, &quote(self.name), &[], &|_, text| self.distance(text)).into_iter().next()
+            unknown::fields(pairs, &names, &quote(self.name), Stages::default(), &|_, text| self.distance(text))
+                .into_iter()
+                .next()
         {
             return Err(wrong);
         }
@@ -282,7 +250,8 @@ impl<'a> Measure<'a> {
                 .collect());
         }
         let names = ["unit", "values"];
-        let wrong = unknown::fields(pairs, &names, &quote(self.name), &[], &|_, text| self.distance(text));
+        let distance = |_: &str, text: &str| self.distance(text);
+        let wrong = unknown::fields(pairs, &names, &quote(self.name), Stages::default(), &distance);
         if let Some(wrong) = wrong.into_iter().next() {
             return Err(wrong);
         }

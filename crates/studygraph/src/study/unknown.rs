@@ -2,12 +2,14 @@
 //!
 //! Must not know: what any field means.
 
-use super::document::{Content, KeyValue};
+use super::document::{Content, KeyValue, Node};
 use super::notation;
+use super::overrides::Stages;
 use super::quantity::interval::halves;
 use super::words::quote;
-use crate::program::Foreign;
+use crate::program::{Around, Foreign};
 use declare::error::{Diagnostic, Place, suggest};
+use declare::units::{Quantity, foreign_quantity, parse_quantity};
 
 /// What is wrong with every key of `pairs` that is not `known`; the mapping is called `label`.
 ///
@@ -16,7 +18,7 @@ pub fn fields(
     pairs: &[KeyValue],
     known: &[&str],
     label: &str,
-    foreign: &[Foreign],
+    stages: Stages,
     distance: &dyn Fn(&str, &str) -> f64,
 ) -> Vec<Diagnostic> {
     let mut wrong = Vec::new();
@@ -33,13 +35,14 @@ pub fn fields(
         }
         wrong.push({
             let message = format!("unknown field {} of {label}", quote(&pair.key));
-            let help = called(&pair.key, known, foreign).or_else(|| without_space(pair, known)).unwrap_or_else(|| {
-                let help = suggest(&pair.key, known.iter().copied());
-                match elsewhere(&pair.key, foreign) {
-                    Some(lead) if help.starts_with("known here") => format!("{lead}; {help}"),
-                    _ => help,
-                }
-            });
+            let help =
+                called((pairs, pair), known, stages).or_else(|| without_space(pair, known)).unwrap_or_else(|| {
+                    let help = suggest(&pair.key, known.iter().copied());
+                    match elsewhere(&pair.key, stages.foreign) {
+                        Some(lead) if help.starts_with("known here") => format!("{lead}; {help}"),
+                        _ => help,
+                    }
+                });
             Diagnostic::new(message).at(pair.place).help(help)
         });
     }
@@ -52,23 +55,62 @@ fn without_space(pair: &KeyValue, known: &[&str]) -> Option<String> {
     Some(format!("a space is missing behind the `:`; write {}", quote(&format!("{name}: {value}"))))
 }
 
-/// What a word of others is called here, where a field of that name is known; or why there is no such field anywhere.
-fn called(word: &str, known: &[&str], foreign: &[Foreign]) -> Option<String> {
-    let same = |other: &&Foreign| other.word.eq_ignore_ascii_case(word);
-    let said = |other: &Foreign| match other.field {
+/// What the word of others in `pair` is called here, where a field of that name is known; or why there is no such field anywhere.
+fn called((pairs, pair): (&[KeyValue], &KeyValue), known: &[&str], stages: Stages) -> Option<String> {
+    let mut words = stages.foreign.iter().filter(|other| other.word.eq_ignore_ascii_case(&pair.key));
+    let other = words.find(|other| other.field.is_none_or(|field| known.contains(&field)))?;
+    let said = match other.field {
         Some(field) if other.remark.is_empty() => format!("here it is called `{field}`"),
+        Some(field) if other.is_other => format!("state `{field}` instead: {}", other.remark),
         Some(field) => format!("here it is called `{field}`: {}", other.remark),
         None => other.remark.to_owned(),
     };
-    let mut words = foreign.iter().filter(same);
-    words.find(|other| other.field.is_none_or(|field| known.contains(&field))).map(said)
+    let around = Around {
+        value: number(&pair.node),
+        beside: &|name| beside(pairs, name),
+        anywhere: &|path| anywhere(stages.pairs, path),
+    };
+    let remedy = other.remedy.and_then(|remedy| remedy(&around));
+    Some(remedy.map_or_else(|| said.clone(), |remedy| format!("{said}; {remedy}")))
+}
+
+/// The number of a scalar, in any unit that is known anywhere.
+fn number(node: &Node) -> Option<Quantity> {
+    let Content::Scalar { text, quoted: false } = &node.content else { return None };
+    let foreign = || foreign_quantity(text).map(|(value, dimension)| Quantity { value, dimension, has_unit: true });
+    parse_quantity(text).ok().or_else(foreign)
+}
+
+fn beside(pairs: &[KeyValue], name: &str) -> Option<Quantity> {
+    pairs.iter().find(|pair| pair.key.eq_ignore_ascii_case(name)).and_then(|pair| number(&pair.node))
+}
+
+/// The number that all stages have at the end of these names, of those that have one.
+fn anywhere(stages: &[KeyValue], path: &[&str]) -> Option<Quantity> {
+    let of_stage = |stage: &KeyValue| {
+        let mut node = &stage.node;
+        for name in path {
+            let Content::Mapping(pairs) = &node.content else { return None };
+            node = &pairs.iter().find(|pair| pair.key == *name)?.node;
+        }
+        number(node)
+    };
+    let mut found = stages.iter().filter_map(of_stage);
+    let first = found.next()?;
+    found.all(|other| other == first).then_some(first)
 }
 
 /// What a word of others is called where there is such a field.
 fn elsewhere(word: &str, foreign: &[Foreign]) -> Option<String> {
     let mut words = foreign.iter().filter(|other| other.word.eq_ignore_ascii_case(word));
-    let field = words.find_map(|other| other.field)?;
-    Some(format!("a study calls it `{field}`, in another place"))
+    words.find_map(|other| {
+        let field = other.field?;
+        Some(if other.is_other {
+            format!("a study states `{field}` instead, in another place: {}", other.remark)
+        } else {
+            format!("a study calls it `{field}`, in another place")
+        })
+    })
 }
 
 /// Whether this can stand behind the digits of a number: nothing, its unit, or the other half of an interval.

@@ -4,7 +4,7 @@
 //! in the record is its slot. So whatever a stage can be told can be varied, with the unit and the range that its own
 //! declaration has. Must not know: what any field means, which combinations of values are taken.
 
-use super::decode::{Decoder, Reference, integer, scalar};
+use super::decode::{Decoder, Reference, scalar};
 use super::document::{Content, KeyValue, Node};
 use super::overrides::Stages;
 use super::path::FieldPath;
@@ -12,12 +12,13 @@ use super::quantity::Measure;
 use super::quantity::interval::without_interval;
 use super::spread;
 use super::unknown;
+use super::whole::integer;
 use super::words::{alternatives, expected, quote};
 use declare::error::{Diagnostic, Place};
 use declare::parameter::Shape;
 use declare::record::Record;
 use declare::record::varied::{Axis, Slot, Stage, Values, Varied};
-use declare::units::{RATIO, split_quantity};
+use declare::units::{LENGTH, RATIO, parse_quantity, split_quantity};
 
 /// What names of columns look like, as a regular expression: they are words of formulas and of SQL.
 pub const COLUMN_PATTERN: &str = "^[a-z][a-z0-9_]{0,63}$";
@@ -139,7 +140,9 @@ fn axis(stages: Stages, links: &[Link], pair: &KeyValue, of: &str) -> Result<(Ax
         let message = format!("{} is {}; `{{ field: …, values: […] }}` is expected", quote(name), pair.node.describe());
         return Err(Diagnostic::new(message).at(pair.node.place));
     };
-    if let Some(wrong) = unknown::fields(fields, &FIELDS, &quote(name), &[], &|_, _| 0.0).into_iter().next() {
+    if let Some(wrong) =
+        unknown::fields(fields, &FIELDS, &quote(name), Stages::default(), &|_, _| 0.0).into_iter().next()
+    {
         return Err(wrong);
     }
     let given = |field: &str| fields.iter().find(|given| given.key == field && !given.node.is_null());
@@ -171,10 +174,11 @@ fn axis(stages: Stages, links: &[Link], pair: &KeyValue, of: &str) -> Result<(Ax
             return Err(Diagnostic::new(message).at(written.node.place));
         }
     };
-    let one = |node: &Node| number(name, target.shape, node);
+    let measure = Measure::new(name, target.shape, None).counting(target.field, |unit| length_of(&stages, stage, unit));
+    let one = |node: &Node| number(measure, target.shape, node);
     let path_text = text;
     let about = || path.written(stages.pairs, stages.kinds).map(without_interval);
-    let stated = spread::Stated { name, fields, place: pair.place, measure: Measure::new(name, target.shape, None) };
+    let stated = spread::Stated { name, fields, place: pair.place, measure };
     let (values, first, values_place) = if let Some(formula) = given("follows") {
         if let Some(other) = fields.iter().find(|other| !["field", "follows"].contains(&other.key.as_str())) {
             let message = format!("{} does not go with `follows`, which says all of it", quote(&other.key));
@@ -246,13 +250,22 @@ fn axis(stages: Stages, links: &[Link], pair: &KeyValue, of: &str) -> Result<(Ax
     Ok((axis, stage.to_owned(), first))
 }
 
-fn number(name: &str, shape: &Shape, node: &Node) -> Result<f64, Diagnostic> {
+fn number(measure: Measure, shape: &Shape, node: &Node) -> Result<f64, Diagnostic> {
     match shape {
         Shape::Integer { minimum, maximum, multiple } => {
-            Ok(integer(name, node, shape, (*minimum, *maximum), *multiple)? as f64)
+            Ok(integer(measure.name, node, shape, (*minimum, *maximum), *multiple)? as f64)
         }
-        _ => Measure::new(name, shape, None).single(node),
+        _ => measure.single(node),
     }
+}
+
+/// A length that a stage has in a field of its own, in SI.
+fn length_of(stages: &Stages, stage: &str, field: &str) -> Option<f64> {
+    let Content::Mapping(pairs) = &stages.pairs.iter().find(|pair| pair.key == stage)?.node.content else {
+        return None;
+    };
+    let Content::Scalar { text, .. } = &pairs.iter().find(|pair| pair.key == field)?.node.content else { return None };
+    parse_quantity(text).ok().filter(|read| read.dimension == LENGTH).map(|read| read.value)
 }
 
 /// The points of `{ from, to, count }`, which must be whole where the field is.

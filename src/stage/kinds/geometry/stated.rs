@@ -104,7 +104,12 @@ pub struct CentreDistanceAllowance {
 #[derive(Debug, Declared)]
 pub struct StatedGear {
     /// Number of teeth z.
-    #[declared(minimum = 4, maximum = 10_000, example = "24")]
+    #[declared(
+        minimum = 4,
+        maximum = 10_000,
+        example = "24",
+        negative = "a negative number of teeth is an internal gear elsewhere; only external gears are modelled"
+    )]
     pub teeth: u32,
     /// Face width b.
     #[declared(minimum = 1e-6, maximum = 100.0, dimension = LENGTH, example = "20 mm")]
@@ -113,7 +118,7 @@ pub struct StatedGear {
     #[declared(minimum = 0.0, maximum = 1e4, dimension = LENGTH, example = "18 mm")]
     pub bore_radius: f64,
     /// Profile shift coefficient x.
-    #[declared(minimum = -2.0, maximum = 3.0, default = "0.0")]
+    #[declared(minimum = -2.0, maximum = 3.0, default = "0.0", counts_in = "module")]
     pub profile_shift: f64,
     /// Thickness of the teeth, when it is not that without backlash: profile shift, tip circle and centre distance are then
     /// nominal.
@@ -122,7 +127,7 @@ pub struct StatedGear {
     #[declared(minimum = 1e-6, maximum = 1e4, dimension = LENGTH, example = "39 mm")]
     pub tip_radius: Option<f64>,
     /// Tip shortening k in modules: r_a = m(z/2 + h_aP* + x − k).
-    #[declared(minimum = -1.0, maximum = 1.0, example = "0.1")]
+    #[declared(minimum = -1.0, maximum = 1.0, example = "0.1", counts_in = "module")]
     pub tip_shortening: Option<f64>,
     /// What of this gear is not stated, but follows from the centre distance.
     pub from_centre_distance: Option<FromCentreDistance>,

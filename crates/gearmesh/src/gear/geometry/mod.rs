@@ -37,25 +37,25 @@ use pinion_cutter::PinionCutter;
 #[derive(Clone, Copy, Debug, PartialEq, Declared)]
 pub struct Rack {
     /// Addendum coefficient h_aP*.
-    #[declared(minimum = 0.1, maximum = 3.0, default = "1.0")]
+    #[declared(minimum = 0.1, maximum = 3.0, default = "1.0", counts_in = "module")]
     pub addendum: f64,
     /// Dedendum coefficient h_fP*.
-    #[declared(minimum = 0.1, maximum = 4.0, default = "1.25")]
+    #[declared(minimum = 0.1, maximum = 4.0, default = "1.25", counts_in = "module")]
     pub dedendum: f64,
     /// Tip radius coefficient ρ_fP*.
-    #[declared(minimum = 0.0, maximum = 2.0, default = "0.38")]
+    #[declared(minimum = 0.0, maximum = 2.0, default = "0.38", counts_in = "module")]
     pub tip_radius: f64,
     /// Protuberance pr*: how far the round of the tip stands out of the straight flank, normal to it.
-    #[declared(minimum = 0.0, maximum = 0.5, default = "0.0")]
+    #[declared(minimum = 0.0, maximum = 0.5, default = "0.0", counts_in = "module")]
     pub protuberance: f64,
     /// Angle α_prP of the straight side of the protuberance, from the round to the flank; below the pressure angle.
     #[declared(minimum = DEGREE, maximum = FRAC_PI_4, dimension = ANGLE, default = "10 deg")]
     pub protuberance_angle: f64,
     /// Machining allowance q*: what the flanks of the tool leave on each flank of the tooth to be ground off.
-    #[declared(minimum = 0.0, maximum = 0.5, default = "0.0")]
+    #[declared(minimum = 0.0, maximum = 0.5, default = "0.0", counts_in = "module")]
     pub machining_allowance: f64,
     /// Radius ρ_g* of the notch that grinding leaves in the root, where the allowance is larger than the protuberance.
-    #[declared(minimum = 0.0, maximum = 2.0, default = "0.0")]
+    #[declared(minimum = 0.0, maximum = 2.0, default = "0.0", counts_in = "module")]
     pub notch_radius: f64,
 }
 

@@ -21,13 +21,13 @@ pub struct PinionCutter {
     #[declared(minimum = 4, maximum = 10_000, example = "25")]
     pub teeth: u32,
     /// Profile shift coefficient x_0: of a new cutter above 0, and smaller each time it is sharpened.
-    #[declared(minimum = -2.0, maximum = 3.0, default = "0.0")]
+    #[declared(minimum = -2.0, maximum = 3.0, default = "0.0", counts_in = "module")]
     pub profile_shift: f64,
     /// Addendum coefficient h_aP0*: its tip radius is m(z_0/2 + x_0 + h_aP0*).
-    #[declared(minimum = 0.1, maximum = 4.0, default = "1.25")]
+    #[declared(minimum = 0.1, maximum = 4.0, default = "1.25", counts_in = "module")]
     pub addendum: f64,
     /// Radius ρ_aP0* of the rounding of its tips.
-    #[declared(minimum = 0.0, maximum = 2.0, default = "0.2")]
+    #[declared(minimum = 0.0, maximum = 2.0, default = "0.2", counts_in = "module")]
     pub tip_radius: f64,
 }
 

@@ -46,7 +46,7 @@ pub struct Conditions {
     #[declared(minimum = 0.85, maximum = 1.0, default = "0.85")]
     pub long_life_factor: f64,
     /// How far the root of a wider gear carries beyond the common face width at each end, in modules.
-    #[declared(minimum = 0.0, maximum = 1.0, default = "1.0")]
+    #[declared(minimum = 0.0, maximum = 1.0, default = "1.0", counts_in = "module")]
     pub overhang: f64,
     /// S_Hmin: least safety against pitting.
     #[declared(minimum = 0.1, maximum = LARGEST, default = "1.0")]

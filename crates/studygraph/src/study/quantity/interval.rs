@@ -245,6 +245,7 @@ impl Measure<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use declare::parameter::Shape;
     use declare::units::LENGTH;
 
     #[test]
@@ -268,8 +269,8 @@ mod tests {
 
     #[test]
     fn an_interval_is_its_middle_as_it_is_by_itself() {
-        let measure =
-            Measure { name: "bore", dimension: Some(LENGTH), minimum: 0.0, maximum: 1.0, example: Some("12 mm") };
+        let shape = Shape::Quantity { dimension: LENGTH, minimum: 0.0, maximum: 1.0 };
+        let measure = Measure::new("bore", &shape, Some("12 mm"));
         let node = |text: &str| Node {
             content: Content::Scalar { text: text.to_owned(), quoted: false },
             place: Place::default(),

@@ -69,7 +69,7 @@ const CHANGES: &[(&str, &str, &str)] = &[
     (
         "{ addendum: 1.25 }",
         "{ addendum: 1.25 mm }",
-        "9:23: `1.25 mm` has a unit; `addendum` is a plain number\n  help: write `1.25`",
+        "9:23: `1.25 mm` has a unit; `addendum` is a plain number\n  help: what is measured in `mm` is another quantity, not this number with a unit",
     ),
     (
         "{ addendum: 1.25 }",
@@ -102,7 +102,7 @@ const CHANGES: &[(&str, &str, &str)] = &[
     (
         "teeth: 19",
         "teeth: 19 mm",
-        "10:22: `teeth` must be a whole number without a unit, not `19 mm`\n  help: write `19`",
+        "10:22: `teeth` must be a whole number without a unit, not `19 mm`\n  help: what is measured in `mm` is another quantity, no count",
     ),
     ("teeth: 19", "teeth: 19.5", "10:22: `teeth` must be a whole number in digits, not `19.5`"),
     (

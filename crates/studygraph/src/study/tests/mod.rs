@@ -169,10 +169,16 @@ static KIND_STE: Kind = kind!("ste", STE);
 static KIND_REPORT: Kind = kind!("report", REPORT);
 
 static FOREIGN: &[Foreign] = &[
-    Foreign { word: "z", field: Some("teeth"), remark: "" },
-    Foreign { word: "bore_diameter", field: Some("bore_radius"), remark: "half of it" },
-    Foreign { word: "diameter", field: Some("teeth"), remark: "a length over the module" },
-    Foreign { word: "helix_angle", field: None, remark: "spur gears only" },
+    Foreign { word: "z", field: Some("teeth"), remark: "", is_other: false, remedy: None },
+    Foreign { word: "bore_diameter", field: Some("bore_radius"), remark: "half of it", is_other: false, remedy: None },
+    Foreign {
+        word: "diameter",
+        field: Some("teeth"),
+        remark: "a length over the module",
+        is_other: false,
+        remedy: None,
+    },
+    Foreign { word: "helix_angle", field: None, remark: "spur gears only", is_other: false, remedy: None },
 ];
 static PROGRAM: Program = Program {
     kinds: KINDS,

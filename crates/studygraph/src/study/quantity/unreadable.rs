@@ -1,0 +1,117 @@
+//! Units that a number cannot have: what to write instead, or which quantity stands there.
+//!
+//! Nothing is offered that means another quantity: no number without its unit, and no unit of another kind. Must not know: how
+//! a number is read.
+
+use super::Measure;
+use crate::study::words::{self, quote};
+use declare::error::{Diagnostic, suggest};
+use declare::units::{self, ForeignUnit, LENGTH, Quantity, RATIO, UnitError, parse_quantity, split_quantity};
+
+impl Measure<'_> {
+    /// What to write for a quantity where a plain number stands. Another quantity is not that number without its unit.
+    pub(super) fn without_unit(&self, text: &str, read: Quantity) -> String {
+        if read.dimension == RATIO {
+            return format!("write `{}`", words::number(read.value));
+        }
+        let Some((field, unit)) = self.counts_in.filter(|_| read.dimension == LENGTH) else {
+            let unit = split_quantity(text).1;
+            return format!("what is measured in {} is another quantity, not this number with a unit", quote(unit));
+        };
+        let name = quote(self.name);
+        match unit.filter(|unit| *unit > 0.0) {
+            Some(unit) => {
+                let (number, of) = (words::number(read.value / unit), words::quantity(unit, LENGTH));
+                format!("{name} counts in `{field}`: {} / {of} = {number}; write `{number}`", text.trim())
+            }
+            None => format!("{name} counts in `{field}`: divide the length by that of `{field}`"),
+        }
+    }
+
+    /// What to write for a unit that no study has.
+    fn foreign(&self, text: &str) -> Option<String> {
+        let (number, unit) = split_quantity(text);
+        let is_expected = |dimension| self.dimension == Some(dimension);
+        if let Some(powers) = units::with_powers(unit) {
+            let read = parse_quantity(&format!("{number} {powers}")).ok()?;
+            let is_what = read.dimension.describe().0;
+            return Some(match self.dimension {
+                Some(dimension) if dimension == read.dimension => format!("write `{number} {powers}`"),
+                _ => format!("a power is written {}, which is {is_what}", quote(&powers)),
+            });
+        }
+        let (factor, own) = match units::foreign_unit(unit)? {
+            ForeignUnit::None(why) => return Some(why.to_owned()),
+            ForeignUnit::Of(factor, own) => (factor, own),
+        };
+        let one = format!("1 {unit} is {} {own}", words::number(factor));
+        let (value, dimension) = units::foreign_quantity(text)?;
+        let read = Quantity { value, dimension, has_unit: true };
+        Some(match self.dimension {
+            Some(_) if is_expected(dimension) => {
+                let converted = number.parse::<f64>().ok()? * factor;
+                format!("write `{} {own}`: {one}", words::number(converted))
+            }
+            Some(_) => format!("{one}, {}", dimension.describe().0),
+            None => format!("{one}; {}", self.without_unit(text, read)),
+        })
+    }
+
+    /// A symbol that was meant by another: with it the unit is what the field takes.
+    fn near_symbol(&self, text: &str, symbol: &str) -> Option<&'static str> {
+        let unit = split_quantity(text).1;
+        let fits = |known: &&'static str| {
+            let read = units::parse_unit(&unit.replacen(symbol, known, 1));
+            read.is_ok_and(|read| self.dimension.is_none_or(|own| own == read.dimension))
+        };
+        let mut same = units::symbols().filter(|known| known.eq_ignore_ascii_case(symbol)).filter(fits);
+        match (same.next(), same.next()) {
+            (Some(only), None) => Some(only),
+            _ => declare::error::nearest(symbol, units::symbols().filter(fits)),
+        }
+    }
+
+    pub(super) fn unreadable(&self, text: &str, error: UnitError) -> Diagnostic {
+        let shown = quote(text);
+        let is_unit = matches!(error, UnitError::Unknown(_) | UnitError::Malformed { .. });
+        if let Some(help) = if is_unit { self.foreign(text) } else { None } {
+            let unit = quote(split_quantity(text).1);
+            return Diagnostic::new(format!("unknown unit {unit} in {shown}; {} is expected", self.expected()))
+                .help(help);
+        }
+        match error {
+            UnitError::Unknown(symbol) => {
+                let message = format!("unknown unit {} in {shown}; {} is expected", quote(&symbol), self.expected());
+                let own = self.dimension.map_or::<&[&str], _>(&[], |dimension| dimension.describe().1);
+                Diagnostic::new(message).help(match self.near_symbol(text, &symbol) {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None => suggest(&symbol, own.iter().copied()),
+                })
+            }
+            UnitError::Malformed { unit, why, instead } => {
+                let message = format!(
+                    "{} in {shown} cannot be read as a unit: {why}; {} is expected",
+                    quote(&unit),
+                    self.expected()
+                );
+                Diagnostic::new(message).help(words::unit_instead(text, instead.as_deref()))
+            }
+            UnitError::Ambiguous { unit, readings } => {
+                let message =
+                    format!("{} in {shown} can be read in two ways; {} is expected", quote(&unit), self.expected());
+                Diagnostic::new(message).help(words::unit_readings(text, &readings, self.dimension))
+            }
+            UnitError::NotFinite => {
+                Diagnostic::new(format!("{shown} is too large a number; {} is expected", self.expected()))
+            }
+            UnitError::NotANumber(_) | UnitError::Missing => {
+                let endless = matches!(
+                    text.trim_start_matches(['+', '-', '.']).to_ascii_lowercase().as_str(),
+                    "nan" | "inf" | "infinity"
+                );
+                let is = if endless { "is not finite" } else { "is not a number" };
+                Diagnostic::new(format!("{shown} {is}; {} is expected", self.expected()))
+            }
+        }
+    }
+}
