@@ -141,3 +141,26 @@ fn the_yaml_language_server_finds_mistakes_and_speaks_in_words() {
     }
     python::run("yaml_language_server.py", &[server.as_os_str()]);
 }
+
+/// What another validator accepts in `schema.py` the program accepts too: names that are numbers, spaces that do not break a line,
+/// block scalars and merged stages.
+#[test]
+fn the_program_accepts_what_the_schema_does() {
+    let pair = "kind: geometry\n    pinion: { teeth: 20, face_width: 20 mm, bore_radius: 10 mm }\n    module:";
+    for text in [
+        format!("study: 2024\nstages:\n  pair:\n    {pair} 3 mm\n"),
+        format!("study: 1e3\nstages:\n  pair:\n    {pair} 3 mm\n"),
+        format!("study: true\nstages:\n  pair:\n    {pair} 3 mm\n"),
+        format!(
+            "study: a\nstages:\n  1:\n    {pair} 3 mm\n  d: {{ kind: modification, pair: 1, designs: {{ e: [] }} }}\n"
+        ),
+        format!("study: a\nstages:\n  pair:\n    {pair} 3\u{a0}mm\n"),
+        format!("study: a\nstages:\n  pair:\n    {pair} 3\u{202f}mm\n"),
+        format!("study: a\nstages:\n  pair:\n    {pair} |\n      3 mm\n"),
+        format!("study: a\nstages:\n  <<: &s\n    pair:\n      {}\n", format!("{pair} 3 mm").replace("\n", "\n  ")),
+    ] {
+        let read = gearstudy::program::load_text(&text, Path::new("agreed.yaml"));
+        let wrong = read.err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(wrong.is_empty() || wrong.contains("it has one gear"), "{text}{wrong}");
+    }
+}

@@ -45,6 +45,26 @@ mistakes = {
 }
 for name, change in mistakes.items():
     assert not validator.is_valid(spoilt(change)), f"accepted: {name}"
+# What the program accepts: names that are numbers to YAML, spaces that do not break a line, block scalars.
+same = {
+    "name": lambda study: study.update(study=2024),
+    "name of digits and an e": lambda study: study.update(study=1e3),
+    "name that is true": lambda study: study.update(study=True),
+    "no-break space": lambda study: study["stages"]["pair"].update(module="3\u00a0mm"),
+    "narrow no-break space": lambda study: study["stages"]["pair"].update(module="3\u202fmm"),
+    "block scalar": lambda study: study["stages"]["pair"].update(module="3 mm\n"),
+    "number of a stage": lambda study: study["stages"]["stiffness"].update(pair=1),
+}
+for name, change in same.items():
+    study = copy.deepcopy(quick)
+    change(study)
+    errors = [error.message[:200] for error in validator.iter_errors(study)]
+    assert not errors, f"refused: {name}: {errors}"
+for name in [2024.5, -3]:
+    assert not validator.is_valid({**quick, "study": name}), f"accepted: {name}"
+# Editors see the key of a merge, which other readers resolve.
+for keys in [schema["properties"]["stages"]["propertyNames"], schema["properties"]["set"]["propertyNames"]]:
+    assert re.search(keys["pattern"], "<<") and not re.search(keys["pattern"], "<")
 print(f"{len(studies)} studies, {len(mistakes)} mistakes")
 
 # Examples and defaults of every field, by the field's own schema; and of the size that studies have.

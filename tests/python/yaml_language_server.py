@@ -100,7 +100,7 @@ beyond = {
     "protuberance_leaves_no_flank", "protuberance_as_steep_as_the_flank", "allowance_leaves_no_tool",
     "notch_without_radius", "cutter_pointed", "cutter_too_small", "cutter_too_round",
     "interval_of_no_width", "interval_beyond_the_range", "interval_of_one_unit", "published_interval",
-    "fit_within_percent", "span_of_no_tooth",
+    "fit_within_percent", "span_of_no_tooth", "units_without_a_power_sign",
     "limit_unknown_path", "limit_without_bounds", "limit_beside_nothing",
 }
 seen = []

@@ -28,7 +28,7 @@ pub fn schema(kinds: &[&'static Kind]) -> Value {
             "description": "The stages by name; each reads the tables of others.",
             "type": "object",
             "minProperties": 1,
-            "propertyNames": leaf::name(),
+            "propertyNames": leaf::names(),
             "additionalProperties": { "$ref": "#/$defs/stage" },
         }),
     );
@@ -39,7 +39,7 @@ pub fn schema(kinds: &[&'static Kind]) -> Value {
             "description": "Other values for fields, by their paths: `pair.pinion.face_width`.",
             "type": "object",
             "minProperties": 1,
-            "propertyNames": leaf::path(),
+            "propertyNames": leaf::paths(),
             "examples": [{ "pair.pinion.face_width": "22 mm" }],
         }),
     );
@@ -53,7 +53,6 @@ pub fn schema(kinds: &[&'static Kind]) -> Value {
         }),
     );
     if let Some(Value::Object(study)) = properties.get_mut("study") {
-        study.insert("type".to_owned(), json!("string"));
         study.extend(leaf::name().as_object().cloned().unwrap_or_default());
     }
     let conditions: Vec<_> = kinds
@@ -273,7 +272,7 @@ fn varied() -> Value {
     json!({
         "type": "object",
         "minProperties": 1,
-        "propertyNames": leaf::column(),
+        "propertyNames": leaf::columns(),
         "additionalProperties": {
             "type": "object",
             "required": ["field"],

@@ -14,8 +14,13 @@ const NUMBER: &str = r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?";
 /// The same where a minus would be outside every range.
 const POSITIVE: &str = r"\+?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?";
 
+/// Before a number and behind its unit: a block scalar ends in a line break. Any space may stand between both, such as the narrow
+/// one that does not break a line.
+const START: &str = r"^\s*";
+const END: &str = r"\s*$";
+
 /// Between the middle and half the width of a number that was printed rounded.
-const OFF_BY: &str = r" *(±|\+/?-|\\pm) *";
+const OFF_BY: &str = r"\s*(±|\+/?-|\\pm)\s*";
 
 /// A name as a heading: `Young's modulus` of `youngs_modulus`.
 pub fn title(name: &str) -> String {
@@ -58,8 +63,8 @@ fn with_example(mut schema: Value, example: Option<Value>) -> Value {
 pub fn quantity(dimension: Dimension, (minimum, maximum): (f64, f64), example: Option<&str>, rounded: bool) -> Value {
     if dimension == RATIO {
         let message = "a ratio is a plain number or one with `%`, such as `0.05` or `5 %`";
-        let off_by = format!("|%{OFF_BY}{POSITIVE} *%|{OFF_BY}{POSITIVE}");
-        let percent = format!("^{NUMBER} *(%{})$", if rounded { &off_by } else { "" });
+        let off_by = format!(r"|%{OFF_BY}{POSITIVE}\s*%|{OFF_BY}{POSITIVE}");
+        let percent = format!(r"{START}{NUMBER}\s*(%{}){END}", if rounded { &off_by } else { "" });
         let percent = json!({ "type": "string", "pattern": percent });
         let (percent, plain) = match example.map(|text| (text, text.parse::<serde_json::Number>())) {
             Some((_, Ok(plain))) => (percent, Some(Value::Number(plain))),
@@ -79,8 +84,8 @@ pub fn quantity(dimension: Dimension, (minimum, maximum): (f64, f64), example: O
     let example = example.map(str::to_owned).or_else(|| words::example(dimension, minimum, maximum));
     let number = if minimum > 0.0 { POSITIVE } else { NUMBER };
     // The unit may stand behind both halves of an interval.
-    let off_by = format!("(( *({units}))?{OFF_BY}{POSITIVE})?");
-    let pattern = format!("^{number}{} *({units})$", if rounded { &off_by } else { "" });
+    let off_by = format!(r"((\s*({units}))?{OFF_BY}{POSITIVE})?");
+    let pattern = format!(r"{START}{number}{}\s*({units}){END}", if rounded { &off_by } else { "" });
     let schema = json!({ "type": "string", "pattern": pattern });
     let such = example.as_ref().map_or_else(String::new, |text| format!(", such as `{text}`"));
     let more = if minimum > 0.0 { ", more than 0" } else { "" };
@@ -114,7 +119,7 @@ pub fn number((minimum, maximum): (f64, f64), example: Option<&str>, rounded: bo
     let mut schema = bounded(minimum, maximum);
     if rounded {
         schema["type"] = json!(["number", "string"]);
-        schema["pattern"] = json!(format!("^{NUMBER}{OFF_BY}{POSITIVE}$"));
+        schema["pattern"] = json!(format!("{START}{NUMBER}{OFF_BY}{POSITIVE}{END}"));
     }
     with_example(explained(schema, "a plain number is expected, without a unit"), example)
 }
@@ -136,7 +141,7 @@ pub fn integer(minimum: i64, maximum: i64, multiple: i64, example: Option<&str>)
 
 /// A number with any unit, or none.
 pub fn any_quantity(example: Option<&str>) -> Value {
-    let schema = json!({ "type": ["number", "string"], "pattern": format!("^{NUMBER}") });
+    let schema = json!({ "type": ["number", "string"], "pattern": format!("{START}{NUMBER}") });
     let message = "a number is expected, with its unit if it has one, such as `4.2 um`";
     with_example(explained(schema, message), example.map(|text| json!(text)))
 }
@@ -157,29 +162,41 @@ const NAMES: &str = "a name has small letters, digits, `-` and `_`, and begins w
 
 /// The name of a stage of one of these kinds.
 pub fn reference(kinds: &[&str], example: Option<&str>) -> Value {
-    let schema = json!({ "type": "string", "pattern": NAME_PATTERN });
+    let schema = json!({ "type": NAME_TYPES, "pattern": NAME_PATTERN });
     let message = format!("{} is expected; {NAMES}", words::stage_of(kinds));
     // In studies stages are mostly called after their kinds.
     let example = example.or(kinds.first().copied()).unwrap_or("ste");
     with_example(explained(schema, &message), Some(json!(example)))
 }
 
-/// Names of stages and of studies.
+/// What a name is to a reader of YAML: digits alone are a number, and a few words are true or false.
+const NAME_TYPES: [&str; 3] = ["string", "integer", "boolean"];
+
+/// The name of a study.
 pub fn name() -> Value {
-    explained(json!({ "pattern": NAME_PATTERN }), NAMES)
+    explained(json!({ "type": NAME_TYPES, "pattern": NAME_PATTERN, "minimum": 0 }), NAMES)
 }
 
-/// Names of columns of the user's own.
-pub fn column() -> Value {
-    let message = "a column's name has small letters, digits and `_`, and begins with a letter";
-    explained(json!({ "pattern": COLUMN_PATTERN }), message)
+/// Keys of a mapping, by their pattern. Editors see `<<`, which merges another mapping into this one, as a key.
+fn keys(pattern: &str, message: &str) -> Value {
+    explained(json!({ "pattern": format!("{pattern}|^<<$") }), message)
 }
 
-/// Where a field is, in the whole study.
-pub fn path() -> Value {
+/// Names of stages, as keys.
+pub fn names() -> Value {
+    keys(NAME_PATTERN, NAMES)
+}
+
+/// Names of columns of the user's own, as keys.
+pub fn columns() -> Value {
+    keys(COLUMN_PATTERN, "a column's name has small letters, digits and `_`, and begins with a letter")
+}
+
+/// Where fields are, in the whole study, as keys.
+pub fn paths() -> Value {
     let pattern = r"^[A-Za-z0-9_-]+([.][^.\[\] ]+|\[[0-9]+\])*$";
     let message = "a path is a stage and the way to a field in it, such as `pair.pinion.face_width`";
-    explained(json!({ "pattern": pattern }), message)
+    keys(pattern, message)
 }
 
 /// One value, a list, or evenly spaced ones.
