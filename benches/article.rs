@@ -90,6 +90,7 @@ impl Stages {
             stop: &AtomicBool::new(false),
             progress: &|_| {},
             warn: &|_| {},
+            is_heard: true,
             work: &Tally::default(),
         };
         node.stage.run(&context, &inputs).unwrap_or_else(|error| panic!("{name}: {error:?}"))

@@ -15,6 +15,7 @@ pub mod kinds;
 pub mod limit;
 pub mod measures;
 pub mod names;
+pub mod neglected_corners;
 pub mod operand;
 pub mod pair;
 pub mod quantity;

@@ -79,6 +79,7 @@ stages:
             stop: &stop,
             progress: &|_| {},
             warn: &|text| warnings.lock().unwrap().push(text),
+            is_heard: true,
             work: &Tally::default(),
         };
         stage.run(&context, &inputs).err().map_or_else(|| panic!("nothing failed"), |failure| failure.to_string())

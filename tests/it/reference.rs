@@ -225,6 +225,7 @@ fn harris_relations_hold_through_the_stage() {
         stop: &stop,
         progress: &|_| (),
         warn: &|_| (),
+        is_heard: true,
         work: &Tally::default(),
     };
     let tables = stage.run(&context, &inputs).unwrap();

@@ -30,6 +30,21 @@ impl Warning {
     pub fn is_of_cases(&self) -> bool {
         matches!(self, Self::Cases(_))
     }
+
+    /// Of two about the same thing the worse one.
+    #[must_use]
+    pub fn worse(self, other: Self) -> Self {
+        match (&self, &other) {
+            (Self::Cases(one), Self::Cases(two)) if two.worst.size > one.worst.size => other,
+            _ => self,
+        }
+    }
+
+    /// Whether it is of cases about this.
+    #[must_use]
+    pub fn is_about(&self, about: &str) -> bool {
+        matches!(self, Self::Cases(cases) if cases.about == about)
+    }
 }
 
 impl From<String> for Warning {

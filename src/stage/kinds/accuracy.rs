@@ -198,7 +198,8 @@ impl Stage for Accuracy {
             let progress = |part: f64| (context.progress)((reached + share * part).min(1.0));
             // What a coarse setting warns of is in the ladder's own columns.
             let warn: &(dyn Fn(Warning) + Sync) = if index == 0 { context.warn } else { &|_| () };
-            let inner = Context { demand: &demand, progress: &progress, warn, ..*context };
+            let is_heard = context.is_heard && index == 0;
+            let inner = Context { demand: &demand, progress: &progress, warn, is_heard, ..*context };
             let asked = (self.quantities.as_slice(), self.evaluations.as_ref());
             trials.push(trial::run(variant, plan(index), asked, &inner, &inputs)?);
             done += runs((index, variant));

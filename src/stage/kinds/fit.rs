@@ -305,6 +305,12 @@ impl Stage for Fitting {
         if said.is_warning {
             (context.warn)(said.text.clone().into());
         }
+        if context.is_heard
+            && let Ok(values) = self.followed.values(&best.fit.point)
+            && let Some(warning) = self.points.warning_of_corners(&values, (context, inputs))
+        {
+            (context.warn)(warning);
+        }
         let summary = Summary {
             said: said.text,
             solutions: found.meeting(),

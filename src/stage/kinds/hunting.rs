@@ -8,6 +8,7 @@ mod tables;
 use self::stated::{OfPair, StatedDeviations};
 use self::tables::{Case, Found, Order, Row, curve, flanks, spectrum, summary};
 use crate::stage::common::{Contact, Slices};
+use crate::stage::neglected_corners::{self, WithoutCorners};
 use crate::stage::{Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, RowCount, Stage};
 use crate::stage::{common, designs, names, pair};
 use declare::Declared;
@@ -164,6 +165,29 @@ impl Stated {
         }
         Ok(found)
     }
+
+    /// Reports the error by `corner_contact: none`, of the mesh cycle without deviations of single teeth.
+    fn warn_of_corners(
+        &self,
+        (context, inputs): (&Context, &Inputs),
+        cycle: &MeshCycle,
+        tasks: &[(String, Design, f64)],
+    ) {
+        if !context.is_heard {
+            return;
+        }
+        let without: Vec<Option<WithoutCorners>> = tasks
+            .iter()
+            .map(|(name, design, torque)| WithoutCorners::of(name, *torque, &LoadCase::new(cycle, design, *torque)))
+            .collect();
+        let Some(worst) = WithoutCorners::worst(&without) else { return };
+        let Some(exact) = neglected_corners::cycle(inputs, self.settings()) else { return };
+        let (_, design, torque) = &tasks[worst];
+        let loading = LoadCase::new(&exact, design, *torque);
+        if let Some(warning) = without[worst].and_then(|without| without.compared(&loading)) {
+            (context.warn)(warning);
+        }
+    }
 }
 
 impl Stage for Stated {
@@ -246,7 +270,7 @@ impl Stage for Stated {
         let chunks = period.div_ceil(AT_ONCE);
         let steps = Steps::new(context, tasks.len().saturating_mul(chunks));
         let mut cases: Vec<Case> = Vec::with_capacity(tasks.len());
-        for (name, design, torque) in tasks {
+        for (name, design, torque) in tasks.clone() {
             let found = self.answer(context, &cycle, (&name, &design), torque, (&stated.teeth, period), &steps)?;
             let plain = LoadCase::new(&cycle, &design, torque).peak_to_peak();
             let orders = period.saturating_mul(self.harmonics);
@@ -256,6 +280,7 @@ impl Stage for Stated {
             let keeps_curve = context.demand.table(tables::CURVE);
             cases.push(Case::new((name, torque), (plain, stated.deviations), found, amplitudes, keeps_curve));
         }
+        self.warn_of_corners((context, inputs), &cycle, &tasks);
         context.work.add(&cycle.work());
         let teeth = [Side::Pinion, Side::Gear].map(|side| pair.side(side).specification.teeth);
         let mut tables = vec![summary().table(&cases).map_err(failed)?];

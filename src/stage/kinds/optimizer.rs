@@ -16,6 +16,7 @@ use crate::stage::cases::{Cases, Loads};
 use crate::stage::common::{Contact, Slices};
 use crate::stage::designs::{self, Element, Elements, NamedDesign};
 use crate::stage::doubts::Doubted;
+use crate::stage::neglected_corners::{self, WithoutCorners};
 use crate::stage::{
     Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, Stage, common, names, root_influences,
 };
@@ -284,6 +285,31 @@ impl Optimizer {
         told.into_iter().flatten().flatten().for_each(|case| (context.warn)(Warning::Cases(case)));
     }
 
+    /// Reports the error of the load case of the best design that loses most by `corner_contact: none`.
+    fn warn_of_corners(&self, (context, inputs): (&Context, &Inputs), found: &Found, of: (&Fitted, &MeshCycle)) {
+        let Ok(design) = of.0.design(&found.best.point) else { return };
+        if !context.is_heard {
+            return;
+        }
+        let mut without = Vec::new();
+        self.of_cases(of, &design, |loading, torque| {
+            without.push(WithoutCorners::of(&self.stated.name, torque, loading));
+        });
+        let Some(worst) = WithoutCorners::worst(&without) else { return };
+        let (Some(compared), Some(cycle)) = (without[worst], neglected_corners::cycle(inputs, found.settings)) else {
+            return;
+        };
+        let mut call = 0;
+        self.of_cases((of.0, &cycle), &design, |loading, _| {
+            if call == worst
+                && let Some(warning) = compared.compared(loading)
+            {
+                (context.warn)(warning);
+            }
+            call += 1;
+        });
+    }
+
     fn tables(
         &self,
         context: &Context,
@@ -388,6 +414,7 @@ impl Stage for Optimizer {
                 self.evaluations().table_of(&tried).map_err(|error: TableError| Failure::new(error.to_string()))?,
             );
         }
+        self.warn_of_corners((context, inputs), &found, (&fitted, &cycle));
         self.tell_if_simpler_does(context, &found, (&fitted, &cycle));
         context.work.add(&base.work());
         Ok(tables)

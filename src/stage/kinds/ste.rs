@@ -275,6 +275,7 @@ impl Stage for Ste {
             of_pairs: pressures::of_pairs_are_wanted(context.demand),
             loss: friction::of_summary_is_wanted(context.demand),
             left: friction::of_curve_is_wanted(context.demand),
+            corners: context.is_heard,
         };
         let rubs = self.friction.is_some();
         let per_torque = nominal_root_stresses(context, &pair);
@@ -310,6 +311,7 @@ impl Stage for Ste {
         let (answers, parts): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
         let keyed: Vec<Keyed> = answers.into_iter().flatten().collect();
         self.warn(context, &keyed, pair.pinion.specification.module);
+        self.warn_of_corners((context, inputs), &base, &keyed, &tasks);
         self.tell_if_simpler_does(context, (&pair, &base), (&keyed, &simple))?;
         pressures::warn(context, &base, &keyed);
         self.warn_of_friction(context, &keyed);

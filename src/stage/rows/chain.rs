@@ -3,11 +3,15 @@
 //! Each is built by its kind from its record with a row's values in it, and run as in the study. Must not know: what any of
 //! them computes.
 
+use std::sync::{Mutex, PoisonError};
+
+use crate::stage::neglected_corners;
 use crate::stage::{self, Context, Demand, Inputs, Kind, Port, Stage, Want};
 use declare::error::{Diagnostic, Failure};
 use declare::record::Record;
 use declare::record::varied::{self, Varied};
 use studygraph::table::data::Table;
+use studygraph::warning::Warning;
 
 use super::Column;
 
@@ -176,11 +180,44 @@ impl Chain {
         tables: &Tables,
         (context, outer): (&Context, &Inputs),
     ) -> Result<Vec<Table>, Trouble> {
+        let is_heard = false;
+        // What a stage warns of in one of a million rows nobody reads.
+        let inner = Context { progress: &|_| (), warn: &|_| (), is_heard, ..*context };
+        self.run_in(index, (columns, row), tables, (&inner, outer))
+    }
+
+    /// The worst that stages report of tip corners that they leave out, with a row's values; none where one cannot run.
+    pub fn warning_of_corners(
+        &self,
+        (columns, row): (&[Column], &[f64]),
+        (context, outer): (&Context, &Inputs),
+    ) -> Option<Warning> {
+        let worst: Mutex<Option<Warning>> = Mutex::default();
+        let warn = |warning: Warning| {
+            if warning.is_about(neglected_corners::ABOUT) {
+                let mut worst = worst.lock().unwrap_or_else(PoisonError::into_inner);
+                *worst = Some(worst.take().map_or_else(|| warning.clone(), |before| before.worse(warning.clone())));
+            }
+        };
+        let inner = Context { progress: &|_| (), warn: &warn, ..*context };
+        let mut tables: Tables = self.links.iter().map(|_| None).collect();
+        for link in 0..self.links.len() {
+            tables[link] = Some(self.run_in(link, (columns, row), &tables, (&inner, outer)).ok()?);
+        }
+        worst.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn run_in(
+        &self,
+        index: usize,
+        (columns, row): (&[Column], &[f64]),
+        tables: &Tables,
+        (context, outer): (&Context, &Inputs),
+    ) -> Result<Vec<Table>, Trouble> {
         let link = &self.links[index];
         let stage = (link.kind.build)(&self.record(index, columns, row))
             .map_err(|wrong| Trouble::Invalid(format!("{}: {}", link.kind.name, wrong.first.message)))?;
-        // What a stage warns of in one of a million rows nobody reads.
-        let inner = Context { demand: &link.demand, progress: &|_| (), warn: &|_| (), ..*context };
+        let inner = Context { demand: &link.demand, ..*context };
         stage.run(&inner, &self.inputs(index, tables, outer)).map_err(|failure| Trouble::of(link.kind.name, failure))
     }
 }

@@ -4,6 +4,8 @@
 //! needed. Every row is a function of its values alone, so neither threads nor parts enter it. Must not know: how a number is
 //! found.
 
+use std::collections::BTreeSet;
+
 use rayon::prelude::*;
 
 use super::chain::{Tables, Trouble};
@@ -12,10 +14,11 @@ use super::values::RowSet;
 use super::{Asked, Class};
 use crate::stage::{Context, Inputs, Others};
 use declare::error::Failure;
-use declare::work::{Counter, Work};
+use declare::work::{Counter, Tally, Work};
 use studygraph::stage::steps::Steps;
 use studygraph::table::data::{Cell, Data, Table, TableError};
 use studygraph::table::schema::{Column, Schema};
+use studygraph::warning::Warning;
 
 pub const TABLE: &str = "rows";
 pub const REASON: &str = "reason";
@@ -68,7 +71,45 @@ pub fn table(
     for groups in groups(asked, rows, &missing).chunks(UPSTREAM_AT_ONCE * rayon::current_num_threads()) {
         compute(asked, rows, groups, (context, inputs), &steps, &mut answers)?;
     }
+    if context.is_heard {
+        warn_of_corners(asked, rows, (context, inputs));
+    }
     made(asked, rows, answers).map_err(|error| Failure::new(error.to_string()))
+}
+
+/// Reports what rows lose by `corner_contact: none`. Of the rows with the largest torque it looks at the first, the last and those
+/// with the least and the largest value of a modification: a curve of every row would take too long, and rows that are taken
+/// over have none.
+fn warn_of_corners(asked: &Asked, rows: &RowSet, (context, inputs): (&Context, &Inputs)) {
+    let torque = asked.columns.iter().position(|column| column.class == Class::Torque);
+    let at = |column: usize| move |row: &usize| rows.si(*row)[column];
+    let most = torque.and_then(|torque| (0..rows.len()).map(|row| at(torque)(&row)).reduce(f64::max));
+    let loaded: Vec<usize> =
+        (0..rows.len()).filter(|row| torque.is_none_or(|torque| Some(at(torque)(row)) == most)).collect();
+    let mut candidates = BTreeSet::from_iter(loaded.first().into_iter().chain(loaded.last()).copied());
+    for (column, _) in asked.columns.iter().enumerate().filter(|(_, column)| column.class == Class::Design) {
+        let order = |one: &usize, other: &usize| at(column)(one).total_cmp(&at(column)(other));
+        candidates.extend(loaded.iter().copied().min_by(order));
+        // Of equal ones the first, which is more like the others.
+        candidates.extend(loaded.iter().rev().copied().max_by(order));
+    }
+    let candidates: Vec<usize> = candidates.into_iter().collect();
+    // Work beside the rows is not theirs.
+    let aside = Tally::default();
+    let context = &Context { work: &aside, ..*context };
+    let warnings = candidates.par_iter().map(|row| {
+        let row = rows.si(*row);
+        let (tables, upstream) = found_upstream(asked, row, context, inputs).ok()?;
+        let (chain, columns) = (&asked.chain, asked.columns.as_slice());
+        if let (Some(quick), Some(upstream)) = (&asked.quick, &upstream) {
+            return quick.neglected_corners((chain, columns), (&tables, inputs), upstream, row);
+        }
+        chain.warning_of_corners((columns, row), (context, inputs))
+    });
+    let warnings: Vec<Option<Warning>> = warnings.collect();
+    if let Some(worst) = warnings.into_iter().flatten().reduce(Warning::worse) {
+        (context.warn)(worst);
+    }
 }
 
 /// Stretches of missing rows with the same pair and compliances.

@@ -13,7 +13,9 @@ use super::{Class, Column};
 use crate::stage::{Ahead, Context, Demand, Inputs, Port};
 use declare::error::{Diagnostic, Failure};
 use declare::record::varied::Varied;
+use declare::work::Tally;
 use studygraph::table::data::Table;
+use studygraph::warning::Warning;
 
 /// Entries of a stage that are kept from batch to batch.
 const KEPT: usize = 64;
@@ -101,6 +103,14 @@ impl Points {
         let all = vec![true; self.chain.links.len()];
         let asked: Vec<Asked> = points.iter().map(|point| (point.clone(), all.clone())).collect();
         Ok(self.each(&asked, memory, given)?.into_iter().map(|found| found.into_iter().collect()).collect())
+    }
+
+    /// The worst that stages report at a point of tip corners that they leave out.
+    pub fn warning_of_corners(&self, point: &[f64], (context, inputs): (&Context, &Inputs)) -> Option<Warning> {
+        // Work beside the points is not theirs.
+        let aside = Tally::default();
+        let context = &Context { work: &aside, ..*context };
+        self.chain.warning_of_corners((&self.columns, point), (context, inputs))
     }
 
     /// The stages whose tables those of some stages depend on, themselves included.

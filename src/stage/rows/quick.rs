@@ -12,15 +12,20 @@ use super::{Class, Column};
 use crate::stage::cases::{DEVIATIONS, Deviations};
 use crate::stage::common::{self, Contact, Slices};
 use crate::stage::designs::{self, Element, NamedDesign};
+use crate::stage::neglected_corners::{self, WithoutCorners};
 use crate::stage::{Context, Inputs};
 use declare::declared::Declared;
 use declare::error::{Failure, suggest};
+use declare::number::significant;
+use declare::record::varied::Axis;
 use declare::record::{PlacedValue, Record, Value};
+use declare::units::in_unit;
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::modification::template::{Fitted, Template};
 use gearmesh::gear::modification::{self, Design};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
+use studygraph::warning::Warning;
 
 /// Names of fields and tables of the stage that loads a pair, and of the one that has the designs.
 const TORQUE: &str = "torque";
@@ -180,6 +185,31 @@ impl Quick {
             found.push(numbers.map_err(|message| format!("{}: {message}", chain.links[self.last].kind.name)));
             loaded = Some(loading);
         }
+    }
+
+    /// What a row's curve leaves out by `corner_contact: none`, and what a curve with corner contact makes of it; nothing where
+    /// that is little.
+    pub fn neglected_corners(
+        &self,
+        (chain, columns): (&Chain, &[Column]),
+        (tables, outer): (&Tables, &Inputs),
+        upstream: &Upstream,
+        row: &[f64],
+    ) -> Option<Warning> {
+        let mut before = Before::default();
+        let (sampled, design) = self.ready((chain, columns), upstream, &mut before, row).ok()?;
+        let torque = self.torque.map_or(self.fixed_torque, |column| row[column]);
+        let written = |(column, value): (&Column, &f64)| {
+            let Axis { name, unit, .. } = &column.axis;
+            let space = if unit.is_empty() { "" } else { " " };
+            format!("{name} {}{space}{unit}", significant(in_unit(*value, unit), 6))
+        };
+        let varied = columns.iter().zip(row).filter(|(column, _)| column.class != Class::Torque);
+        let name = varied.map(written).collect::<Vec<_>>().join(", ");
+        let loading = LoadCase::new(&sampled.cycle, design, torque);
+        let without = WithoutCorners::of(&name, torque, &loading).filter(WithoutCorners::may_matter)?;
+        let cycle = neglected_corners::cycle(&chain.inputs(self.last, tables, outer), sampled.settings)?;
+        without.compared(&LoadCase::new(&cycle, design, torque))
     }
 
     /// The cycle and the design of a row, found or as the row before had them.

@@ -121,6 +121,7 @@ fn run(seed: u64, name: &str, stage: &dyn Stage, inputs: &Inputs, demand: &Deman
         stop: &stop,
         progress: &progress,
         warn: &|text| warnings.lock().unwrap().push(text),
+        is_heard: true,
         work: &Tally::default(),
     };
     let tables = stage.run(&context, inputs).unwrap_or_else(|failure| panic!("`{name}`: {failure}"));

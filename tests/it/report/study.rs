@@ -31,6 +31,7 @@ fn report_tables(published: Vec<Value>, figures: Vec<Value>, tables: &BTreeMap<S
         stop: &stop,
         progress: &|_| (),
         warn: &|_| (),
+        is_heard: true,
         work: &Tally::default(),
     };
     let mut inputs = Inputs::default();

@@ -100,6 +100,7 @@ fn run(study: &Study, graph: &Graph, node: usize, inputs: &Inputs) -> Result<Vec
         stop: &AtomicBool::new(false),
         progress: &|_| (),
         warn: &|_| (),
+        is_heard: false,
         work: &Tally::default(),
     };
     let tables = of_study.stage.run(&context, inputs)?;

@@ -191,6 +191,7 @@ impl Run<'_> {
                 }
                 warnings.lock().unwrap_or_else(PoisonError::into_inner).push(message);
             },
+            is_heard: true,
             work: &work,
         };
         let began = Instant::now();

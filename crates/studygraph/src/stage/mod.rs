@@ -272,6 +272,8 @@ pub struct Context<'a> {
     pub progress: &'a (dyn Fn(f64) + Sync),
     /// Called with something the user should know about the result (a formula outside its range, say).
     pub warn: &'a (dyn Fn(Warning) + Sync),
+    /// False where warnings go nowhere: what only a warning needs is then left out.
+    pub is_heard: bool,
     /// Where the work that is done is counted.
     pub work: &'a Tally,
 }

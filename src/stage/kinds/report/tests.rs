@@ -91,6 +91,7 @@ fn run_record(summary: &Table, record: &Record) -> Result<(Vec<Table>, Vec<Strin
         stop: &stop,
         progress: &|_| (),
         warn: &|warning| warned.lock().unwrap().push(String::from(warning)),
+        is_heard: true,
         work: &Tally::default(),
     };
     let inputs = Inputs { ports: [("ste".to_owned(), vec![summary])].into() };

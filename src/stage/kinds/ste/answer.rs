@@ -7,6 +7,7 @@ use std::time::Instant;
 use super::friction::Lost;
 use super::tables::Found;
 use super::{Named, Ste, pressures};
+use crate::stage::neglected_corners::Estimated;
 use declare::error::Failure;
 use declare::units::in_unit;
 use gearmesh::gear::transmission_error::curve::{Summary, Wanted};
@@ -26,6 +27,8 @@ pub struct Answer {
     pub cornered: Option<Cornered>,
     /// As [`LoadCase::contact_doubt`] has it.
     pub doubt: Option<Doubt>,
+    /// Tip corners that `corner_contact: none` leaves out, where a warning is heard.
+    pub left_out: Option<Estimated>,
     /// What friction takes, if that was asked for.
     pub lost: Option<Lost>,
     /// Nominal root stress by ISO 6336-3 \[Pa\], where it was asked for and holds.
@@ -41,6 +44,8 @@ pub struct WantedHere {
     pub loss: bool,
     /// What it leaves at every position.
     pub left: bool,
+    /// How much tip corners matter that are left out.
+    pub corners: bool,
 }
 
 /// What was loaded last.
@@ -95,6 +100,7 @@ impl Ste {
         }
         let error = sampled.error(settings);
         let doubt = loading.contact_doubt();
+        let left_out = if wanted.corners { Estimated::of(&loading, &points, &summary) } else { None };
         let cornered = loading.cornered(&points);
         let lost = self.lost(&loading, wanted.loss);
         let each = |is_wanted: bool| points.iter().filter(move |_| is_wanted);
@@ -107,7 +113,7 @@ impl Ste {
         let left = left.collect();
         let seconds = began.elapsed().as_secs_f64();
         Ok((
-            Answer { summary, settings, error, seconds, cornered, doubt, lost, iso6336 },
+            Answer { summary, settings, error, seconds, cornered, doubt, left_out, lost, iso6336 },
             Found { points, contacts, left },
         ))
     }

@@ -2,10 +2,13 @@
 //!
 //! Must not know: how a curve is found.
 
-use super::Ste;
 use super::tables::{Keyed, Load};
-use crate::stage::Context;
+use super::{Named, Ste};
 use crate::stage::doubts::Doubted;
+use crate::stage::neglected_corners::{self, WithoutCorners};
+use crate::stage::{Context, Inputs};
+use gearmesh::gear::transmission_error::cycle::MeshCycle;
+use gearmesh::gear::transmission_error::load_case::LoadCase;
 use studygraph::warning::{Cases, Warning};
 
 /// Of the module: an approach beyond it is told, since nothing here is linear any more. The article `mei2016` goes to 0.18.
@@ -51,6 +54,37 @@ impl Ste {
             if let Some(case) = doubted.and_then(|doubted| doubted.told()) {
                 (context.warn)(Warning::Cases(case.with_each("`summary.contact_doubt`")));
             }
+        }
+    }
+
+    /// Reports the error of the curve that loses most by `corner_contact: none`; answers are in the order of the tasks.
+    pub fn warn_of_corners(
+        &self,
+        (context, inputs): (&Context, &Inputs),
+        base: &MeshCycle,
+        answers: &[Keyed],
+        tasks: &[(&Named, f64)],
+    ) {
+        let without: Vec<Option<WithoutCorners>> = answers
+            .iter()
+            .map(|(name, Load { torque, .. }, answer)| {
+                let (peak_to_peak, mean) = (answer.summary.peak_to_peak, answer.summary.mean);
+                let of = |estimated| WithoutCorners { name, torque: *torque, peak_to_peak, mean, estimated };
+                answer.left_out.map(of)
+            })
+            .collect();
+        let Some(worst) = WithoutCorners::worst(&without) else { return };
+        let (((design, ..), torque), settings) = (tasks[worst], answers[worst].2.settings);
+        // Friction at a corner is in no balance: both curves are then without.
+        let compared = if self.is_resisted() {
+            WithoutCorners::of(answers[worst].0, torque, &LoadCase::new(&base.sampled(settings), design, torque))
+        } else {
+            without[worst]
+        };
+        let Some(cycle) = neglected_corners::cycle(inputs, settings) else { return };
+        let found = compared.and_then(|without| without.compared(&LoadCase::new(&cycle, design, torque)));
+        if let Some(warning) = found {
+            (context.warn)(warning);
         }
     }
 }

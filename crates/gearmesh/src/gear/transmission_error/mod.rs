@@ -19,6 +19,7 @@ mod flanks;
 pub mod friction;
 pub mod hunting;
 pub mod load_case;
+pub mod neglected_corners;
 mod path;
 mod plain_pairs;
 pub mod pressure;

@@ -9,6 +9,7 @@ mod doubt;
 mod exchange;
 mod extremes;
 mod friction;
+mod neglected_corners;
 mod plain;
 mod pressure;
 mod root_stress;
