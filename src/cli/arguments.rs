@@ -223,7 +223,7 @@ pub enum Command {
         /// The file to write.
         #[arg(long, short, value_name = "FILE.zip")]
         output: PathBuf,
-        /// Licence of the study and its results, as SPDX identifies it, for example CC-BY-4.0.
+        /// Licence of the study and its results as an SPDX expression, for example CC-BY-4.0 or "MIT OR Apache-2.0".
         #[arg(long, value_name = "SPDX")]
         license: Option<String>,
         /// Who made the study, with an ORCID iD behind the name if there is one; may be given several times.

@@ -5,22 +5,48 @@
 
 use declare::error::nearest;
 use declare::text;
+use spdx::identifiers::{EXCEPTIONS, LICENSES};
+use spdx::{Expression, ParseMode};
 use studygraph::store::archive::metadata::Author;
 
 const ORCID: &str = "https://orcid.org/";
 
-/// An identifier of the SPDX list, in its own letters.
+/// An SPDX expression of one or more licences, with the names and operators in the letters of the SPDX list.
 ///
 /// # Errors
-/// When it is none, with the nearest that is.
+/// When a name is not in the list, with the nearest that is; when the expression is incomplete.
 pub(super) fn license(text: &str) -> Result<String, String> {
-    let (name, later) = text.strip_suffix('+').map_or((text, ""), |name| (name, "+"));
-    if let Some(id) = spdx::license_id(name) {
-        return Ok(format!("{}{later}", id.name));
+    let mut expression = String::new();
+    for word in text.replace('(', " ( ").replace(')', " ) ").split_whitespace() {
+        if !expression.is_empty() && !expression.ends_with('(') && word != ")" {
+            expression.push(' ');
+        }
+        expression.push_str(&identifier(word)?);
     }
-    let near = nearest(text, spdx::identifiers::LICENSES.iter().map(|license| license.name));
+    let mode = ParseMode { allow_deprecated: true, allow_postfix_plus_on_gpl: true, ..ParseMode::STRICT };
+    match Expression::parse_mode(&expression, mode) {
+        Ok(_) => Ok(expression),
+        Err(error) => {
+            let example = "for example `CC-BY-4.0`, or `MIT OR Apache-2.0`";
+            Err(format!("`{text}` is no SPDX expression of licences: {}; {example}", error.reason))
+        }
+    }
+}
+
+/// A word of an SPDX expression as the standard writes it.
+fn identifier(word: &str) -> Result<String, String> {
+    if ["(", ")"].contains(&word) {
+        return Ok(word.to_owned());
+    }
+    let (name, later) = word.strip_suffix('+').map_or((word, ""), |name| (name, "+"));
+    let licenses = || LICENSES.iter().map(|license| license.name);
+    let known = licenses().chain(EXCEPTIONS.iter().map(|exception| exception.name)).chain(["AND", "OR", "WITH"]);
+    if let Some(known) = known.into_iter().find(|known| known.eq_ignore_ascii_case(name)) {
+        return Ok(format!("{known}{later}"));
+    }
+    let near = nearest(word, licenses());
     let help = near.map_or_else(|| "for example `CC-BY-4.0`".to_owned(), |near| format!("did you mean `{near}`?"));
-    Err(format!("`{text}` is no SPDX identifier of a licence; {help}"))
+    Err(format!("`{word}` is no SPDX identifier of a licence; {help}"))
 }
 
 /// A name, and an ORCID iD behind it where there is one.
@@ -102,8 +128,25 @@ mod tests {
         assert_eq!(license("CC-BY-4.0").as_deref(), Ok("CC-BY-4.0"));
         assert!(license("LGPL-2.1+").is_ok() && license("MIT").is_ok());
         assert!(license("CC-BY-4").unwrap_err().contains("did you mean `CC-BY-4.0`?"), "{:?}", license("CC-BY-4"));
-        for wrong in ["", "my own", "../x", "NO-SUCH-1.0"] {
-            assert!(license(wrong).unwrap_err().contains("no SPDX identifier"), "{wrong}");
+        for wrong in ["", "my own", "../x", "NO-SUCH-1.0", "LicenseRef-mine"] {
+            assert!(license(wrong).unwrap_err().contains("no SPDX "), "{wrong}");
+        }
+    }
+
+    /// SPDX 3.0, annex B: operators and names in any letters, brackets, exceptions.
+    #[test]
+    fn expressions_of_several_licences_are_licences() {
+        for (given, expected) in [
+            ("MIT OR Apache-2.0", "MIT OR Apache-2.0"),
+            ("mit or apache-2.0", "MIT OR Apache-2.0"),
+            (" (MIT  OR ISC )and( CC-BY-4.0)", "(MIT OR ISC) AND (CC-BY-4.0)"),
+            ("GPL-2.0-or-later WITH Classpath-exception-2.0", "GPL-2.0-or-later WITH Classpath-exception-2.0"),
+            ("EUPL-1.1+", "EUPL-1.1+"),
+        ] {
+            assert_eq!(license(given).as_deref(), Ok(expected));
+        }
+        for wrong in ["MIT OR", "MIT Apache-2.0", "(MIT", "MIT)", "OR", "MIT WITH ISC", "Classpath-exception-2.0", "MIT/ISC"] {
+            assert!(license(wrong).unwrap_err().contains("no SPDX "), "{wrong}: {:?}", license(wrong));
         }
     }
 }

@@ -12,8 +12,9 @@ use serde_json::{Map, Value, json};
 use super::pack::Entries;
 use super::{CITATION, METADATA, SCHEMA, results, sha256, study};
 use crate::about::About;
+use crate::store::index::INDEX;
 use crate::store::manifest::{Manifest, Source, StageRecord};
-use crate::store::results::MANIFEST;
+use crate::store::results::{MANIFEST, PAGE};
 
 const CRATE: &str = "https://w3id.org/ro/crate/1.3";
 const TERMS: &str = "https://w3id.org/ro/terms/workflow-run";
@@ -28,6 +29,10 @@ const PROGRAM: &str = "#gearstudy";
 const LANGUAGE: &str = "#gearstudy-study";
 const RUN: &str = "#run";
 const ENGINE_RUN: &str = "#engine-run";
+/// The state of a stage that has ended well, by schema.org.
+const COMPLETED: &str = "http://schema.org/CompletedActionStatus";
+/// The licence of study and results if it is not a single licence of the SPDX list.
+const LICENSE: &str = "#license";
 
 /// What the manifest does not say.
 pub struct Description<'a> {
@@ -36,7 +41,7 @@ pub struct Description<'a> {
     pub entries: &'a Entries,
     /// Every stage after all it reads.
     pub steps: &'a [Step],
-    /// SPDX identifier of the licence of study and results.
+    /// SPDX expression of the licence of study and results.
     pub license: Option<&'a str>,
     pub authors: &'a [Author],
     /// The program that makes the archive.
@@ -72,7 +77,7 @@ pub fn metadata(description: &Description<'_>) -> Result<Vec<u8>, String> {
         root(description),
     ];
     for (id, name, version) in PROFILES {
-        graph.push(json!({ "@id": id, "@type": "CreativeWork", "name": name, "version": version }));
+        graph.push(json!({ "@id": id, "@type": ["CreativeWork", "Profile"], "name": name, "version": version }));
     }
     graph.extend(rights(description));
     graph.push(workflow(description));
@@ -90,8 +95,13 @@ fn reference(id: &str) -> Value {
     json!({ "@id": id })
 }
 
+/// Several references; one by itself is not a list, as RO-Crate recommends.
 fn references<I: AsRef<str>>(ids: impl IntoIterator<Item = I>) -> Value {
-    ids.into_iter().map(|id| reference(id.as_ref())).collect()
+    let mut all: Vec<Value> = ids.into_iter().map(|id| reference(id.as_ref())).collect();
+    match all.len() {
+        1 => all.remove(0),
+        _ => Value::Array(all),
+    }
 }
 
 /// The data set as a whole.
@@ -113,25 +123,66 @@ fn root(description: &Description<'_>) -> Value {
         "hasPart": references(description.entries.keys()),
         "mainEntity": reference(&study(&manifest.study)),
         "mentions": references([ENGINE_RUN.to_owned(), RUN.to_owned()].into_iter().chain(manifest.stages.iter().map(run))),
-        "isBasedOn": reference(PROGRAM),
+        "isBasedOn": references([PROGRAM.to_owned()].into_iter().chain(manifest.source.as_ref().map(paper))),
     });
     if !description.authors.is_empty() {
         root["author"] = references(authors(description).map(|(id, _)| id));
     }
     if let Some(source) = &manifest.source {
-        root["citation"] = reference(&paper(source));
+        // A citation is an absolute URI; the words for a paper need not contain one.
+        if let Some(address) = address(&source.paper) {
+            root["citation"] = reference(&address);
+        }
     }
     root
 }
 
+/// The address of a paper, if its words contain a DOI or an address.
+fn address(paper: &str) -> Option<String> {
+    let word = |word: &str| {
+        let word = word.trim_matches(['<', '>', '(', ')', ',', ';', '.']);
+        let doi = word.strip_prefix("doi:").unwrap_or(word);
+        let is_doi = doi.strip_prefix("10.").and_then(|rest| rest.split_once('/')).is_some_and(|(registrant, suffix)| {
+            registrant.len() >= 4 && registrant.starts_with(|c: char| c.is_ascii_digit()) && !suffix.is_empty()
+        });
+        let is_address = ["https://", "http://"].iter().any(|start| word.len() > start.len() && word.starts_with(start));
+        let is_plain = word.chars().all(|c| c.is_ascii_graphic() && !"\"<>\\^`{|}".contains(c));
+        match (is_plain, is_doi, is_address) {
+            (true, true, _) => Some(format!("https://doi.org/{doi}")),
+            (true, _, true) => Some(word.to_owned()),
+            _ => None,
+        }
+    };
+    paper.split_whitespace().find_map(word)
+}
+
+/// The identifier of a paper.
 fn paper(source: &Source) -> String {
+    if let Some(address) = address(&source.paper) {
+        return address;
+    }
     // Any words may name a paper; an identifier holds none but these.
     let kept = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
     format!("#paper-{}", source.paper.chars().map(kept).collect::<String>())
 }
 
+/// The identifier of the licence of study and results.
 fn license(description: &Description<'_>) -> String {
-    description.license.map_or_else(|| "#license".to_owned(), |spdx| format!("https://spdx.org/licenses/{spdx}"))
+    match description.license {
+        Some(expression) if licenses(expression).eq([expression]) => license_text(expression),
+        _ => LICENSE.to_owned(),
+    }
+}
+
+/// The licences and exceptions of an SPDX expression.
+fn licenses(expression: &str) -> impl Iterator<Item = &str> {
+    let words = expression.split([' ', '(', ')']).map(|word| word.trim_end_matches('+'));
+    words.filter(|word| !["", "AND", "OR", "WITH"].contains(word))
+}
+
+/// The address of the text of a licence.
+fn license_text(spdx: &str) -> String {
+    format!("https://spdx.org/licenses/{spdx}")
 }
 
 fn authors<'a>(description: &'a Description<'_>) -> impl Iterator<Item = (String, &'a Author)> {
@@ -141,16 +192,33 @@ fn authors<'a>(description: &'a Description<'_>) -> impl Iterator<Item = (String
     })
 }
 
-/// Licence, authors and the paper.
+/// Licences, authors and the paper.
 fn rights(description: &Description<'_>) -> Vec<Value> {
-    let mut entities = vec![match description.license {
-        Some(spdx) => json!({ "@id": license(description), "@type": "CreativeWork", "name": spdx, "identifier": spdx }),
-        None => json!({
-            "@id": license(description), "@type": "CreativeWork", "name": "No licence given",
-            "description": "Whoever made this archive gave no licence for the study and its results; all rights stay \
-                            with their authors.",
-        }),
-    }];
+    let given: BTreeSet<&str> = description.license.iter().flat_map(|expression| licenses(expression)).collect();
+    let all: BTreeSet<&str> = licenses(description.about.license).chain(given.iter().copied()).collect();
+    let mut entities: Vec<Value> = all
+        .into_iter()
+        .map(|spdx| {
+            json!({
+                "@id": license_text(spdx), "@type": "CreativeWork", "name": spdx, "identifier": spdx,
+                "description": format!("{spdx} of the SPDX list of licences, which has its text."),
+            })
+        })
+        .collect();
+    if license(description) == LICENSE {
+        entities.push(match description.license {
+            Some(expression) => json!({
+                "@id": LICENSE, "@type": "CreativeWork", "name": expression, "identifier": expression,
+                "description": format!("The licence of the study and its results, as an SPDX expression: {expression}."),
+                "hasPart": references(given.into_iter().map(license_text)),
+            }),
+            None => json!({
+                "@id": LICENSE, "@type": "CreativeWork", "name": "No licence given",
+                "description": "Whoever made this archive gave no licence for the study and its results; all rights \
+                                stay with their authors.",
+            }),
+        });
+    }
     entities
         .extend(authors(description).map(|(id, author)| json!({ "@id": id, "@type": "Person", "name": author.name })));
     if let Some(source) = &description.manifest.source {
@@ -176,26 +244,28 @@ fn workflow(description: &Description<'_>) -> Value {
         "@type": ["File", "SoftwareSourceCode", "ComputationalWorkflow", "HowTo"],
         "name": manifest.title,
         "alternateName": manifest.study,
+        "description": "The study: its stages and the values of their fields.",
         "encodingFormat": "application/yaml",
         "contentSize": size(description.entries, &file),
         "sha256": digest(description.entries, &file),
         "identifier": format!("blake3:{}", manifest.study_digest),
         "programmingLanguage": reference(LANGUAGE),
         "hasPart": references(kinds.into_iter().map(tool)),
-        "step": references(manifest.stages.iter().map(|stage| step(manifest, stage))),
+        "step": references(manifest.stages.iter().map(|stage| step(stage))),
     })
 }
 
 /// The program, its language, its licences, and what it was built from.
 fn programs(manifest: &Manifest, about: &About) -> Vec<Value> {
     let program = &manifest.program;
-    let licenses: Vec<&str> = about.license.split(" OR ").collect();
-    let url = |spdx: &&str| format!("https://spdx.org/licenses/{spdx}");
+    // Without a page of its own, the program is described by a file in the archive.
+    let page = about.cited("url").or(about.cited("repository-code")).unwrap_or(CITATION);
     let mut entities = vec![
         json!({
-            "@id": PROGRAM, "@type": "SoftwareApplication", "name": "gearstudy", "softwareVersion": program.version,
+            "@id": PROGRAM, "@type": "SoftwareApplication", "name": "gearstudy", "url": reference(page),
+            "version": program.version, "softwareVersion": program.version,
             "description": about.summary,
-            "license": references(licenses.iter().map(url)),
+            "license": references(licenses(about.license).map(license_text)),
             "author": reference("#gearstudy-authors"),
             "citation": reference(CITATION),
             "softwareRequirements": references(["#rustc", "#dependencies"]),
@@ -205,15 +275,16 @@ fn programs(manifest: &Manifest, about: &About) -> Vec<Value> {
             "name": about.cited("name").unwrap_or("The gearstudy authors"),
         }),
         json!({
-            "@id": LANGUAGE, "@type": "ComputerLanguage", "name": "gearstudy study",
+            "@id": LANGUAGE, "@type": "ComputerLanguage", "name": "gearstudy study", "url": reference(SCHEMA),
             "description": format!("YAML by the schema in `{SCHEMA}`."), "version": program.version,
         }),
         json!({
-            "@id": "#rustc", "@type": "SoftwareApplication", "name": "rustc", "softwareVersion": program.rustc,
+            "@id": "#rustc", "@type": "SoftwareApplication", "name": "rustc", "url": reference("https://www.rust-lang.org/"),
+            "version": program.rustc, "softwareVersion": program.rustc,
             "description": format!("The compiler; profile {}.", program.profile),
         }),
         json!({
-            "@id": "#dependencies", "@type": "SoftwareSourceCode", "name": "Cargo.lock",
+            "@id": "#dependencies", "@type": "CreativeWork", "name": "Cargo.lock",
             "description": "The exact versions of every dependency; the identifier is the digest of the file.",
             "identifier": match program.dependencies.as_str() {
                 "" => "unknown".to_owned(),
@@ -221,11 +292,10 @@ fn programs(manifest: &Manifest, about: &About) -> Vec<Value> {
             },
         }),
     ];
-    entities.extend(
-        licenses
-            .iter()
-            .map(|spdx| json!({ "@id": url(spdx), "@type": "CreativeWork", "name": spdx, "identifier": spdx })),
-    );
+    if page != CITATION {
+        entities.push(json!({ "@id": page, "@type": "WebPage", "name": "gearstudy" }));
+    }
+    entities.push(json!({ "@id": "https://www.rust-lang.org/", "@type": "WebPage", "name": "Rust" }));
     entities
 }
 
@@ -233,8 +303,8 @@ fn tool(kind: &str) -> String {
     format!("#kind-{kind}")
 }
 
-fn step(manifest: &Manifest, stage: &StageRecord) -> String {
-    format!("{}#{}", study(&manifest.study), stage.name)
+fn step(stage: &StageRecord) -> String {
+    format!("#step-{}", stage.name)
 }
 
 fn run(stage: &StageRecord) -> String {
@@ -252,14 +322,15 @@ fn tools_and_steps(description: &Description<'_>) -> Vec<Value> {
     for (position, stage) in manifest.stages.iter().enumerate() {
         let summary = description.steps.iter().find(|step| step.stage == stage.name).map(|step| step.summary.as_str());
         if seen.insert(&stage.kind) {
+            let version = format!("{}+{}", manifest.program.version, stage.version);
             entities.push(json!({
                 "@id": tool(&stage.kind), "@type": "SoftwareApplication", "name": format!("gearstudy {}", stage.kind),
-                "description": summary, "softwareVersion": format!("{}+{}", manifest.program.version, stage.version),
+                "description": summary, "url": reference(SCHEMA), "version": version, "softwareVersion": version,
                 "isPartOf": reference(PROGRAM),
             }));
         }
         entities.push(json!({
-            "@id": step(manifest, stage), "@type": "HowToStep", "name": stage.name, "position": position.to_string(),
+            "@id": step(stage), "@type": "HowToStep", "name": stage.name, "position": position.to_string(),
             "workExample": reference(&tool(&stage.kind)),
         }));
     }
@@ -308,9 +379,10 @@ fn actions(description: &Description<'_>) -> Vec<Value> {
             "@id": RUN, "@type": "CreateAction", "name": format!("Run of the study {}", manifest.study),
             "description": format!("gearstudy run {}", study(&manifest.study)),
             "instrument": reference(&study(&manifest.study)), "endTime": manifest.written,
-            "actionStatus": reference("http://schema.org/CompletedActionStatus"),
+            "actionStatus": reference(COMPLETED),
             "result": references(made),
         })),
+        json!({ "@id": COMPLETED, "@type": "ActionStatusType", "name": "Completed" }),
     ];
     entities.extend(
         facts
@@ -329,7 +401,7 @@ fn actions(description: &Description<'_>) -> Vec<Value> {
                 stage.keys.iter().map(|key| key.key.to_string()).collect::<Vec<_>>().join(", ")
             ),
             "instrument": reference(&tool(&stage.kind)),
-            "actionStatus": reference("http://schema.org/CompletedActionStatus"),
+            "actionStatus": reference(COMPLETED),
             "object": references(read),
             "result": references(stage.tables.iter().flat_map(|table| {
                 [&table.file].into_iter().chain(&table.files).map(|file| format!("{folder}{file}"))
@@ -343,7 +415,7 @@ fn actions(description: &Description<'_>) -> Vec<Value> {
         }));
         entities.push(json!({
             "@id": control(stage), "@type": "ControlAction", "name": format!("Orchestrate {}", stage.name),
-            "instrument": reference(&step(manifest, stage)), "object": reference(&run(stage)),
+            "instrument": reference(&step(stage)), "object": reference(&run(stage)),
         }));
     }
     entities
@@ -379,11 +451,17 @@ fn files(description: &Description<'_>) -> Vec<Value> {
             MANIFEST => "What was run, from what, where, and what came of it.",
             SCHEMA => "The schema of the study.",
             CITATION => "How to cite gearstudy.",
-            _ => table.or(holder).map_or("", |table| &*table.description),
+            INDEX => "Size and digest of every file of the results.",
+            PAGE => "The report: figures, tables, and a verdict on every number that was compared.",
+            _ => match table.or(holder) {
+                Some(table) => &*table.description,
+                None if inside.ends_with(".h5") => "The tables of the study in one HDF5 file.",
+                None if inside.ends_with(".vl.json") => "A figure of the report, as Vega-Lite.",
+                None if inside.ends_with(".svg") => "A figure of the report.",
+                None => "A file of the results.",
+            },
         };
-        if !what.is_empty() {
-            put("description", json!(what));
-        }
+        put("description", json!(what));
         if let Some(format) = format_of(name) {
             put("encodingFormat", json!(format));
         }
