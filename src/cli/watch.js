@@ -13,6 +13,7 @@
   };
   tell(shown.message);
   const ask = async () => {
+    const asked = Date.now();
     try {
       const answer = await fetch("/changes?since=" + shown.version);
       const now = await answer.json();
@@ -20,6 +21,9 @@
         shown.version = now.version;
         if (now.message === "") return location.reload();
         tell(now.message);
+      } else if (Date.now() - asked < 1000) {
+        // Too many pages wait for news.
+        await new Promise((again) => setTimeout(again, 1000));
       }
     } catch {
       tell("gearstudy watch has ended; this page does not follow any longer");

@@ -20,6 +20,7 @@ use super::serve::Server;
 use super::signals::stop_flag;
 use super::{Ending, draw, events, pages, show, studies};
 use crate::program::{self, examine};
+use studygraph::store::file;
 use studygraph::store::results::Folder;
 
 /// How often it is looked whether somebody asked to stop.
@@ -125,11 +126,13 @@ pub(super) fn watch(
 
 /// The study's file, and those that it names, with what is in each.
 fn saved(file: &Path, changes: &Changes) -> Vec<(PathBuf, Option<Vec<u8>>)> {
-    let bytes = std::fs::read(file).ok();
+    // A pipe would be waited for.
+    let read = |file: &Path| file::read(file, file::MOST_MANIFEST).ok();
+    let bytes = read(file);
     let text = bytes.as_deref().map(String::from_utf8_lossy).unwrap_or_default();
     let beside = program::files(&text, file, &studies::settings(changes));
     let of = |file: PathBuf| {
-        let bytes = std::fs::read(&file).ok();
+        let bytes = read(&file);
         (file, bytes)
     };
     std::iter::once((file.to_owned(), bytes.clone())).chain(beside.into_iter().map(of)).collect()
@@ -167,6 +170,7 @@ impl Step {
 fn saves_of(file: &Path) -> Result<(impl Watcher, Receiver<Step>), notify::Error> {
     let (saved, saves) = mpsc::channel();
     let name = file.file_name().map(std::ffi::OsStr::to_owned);
+    let before = threads();
     let mut watcher = notify::recommended_watcher(move |event: notify::Result<notify::Event>| {
         let Ok(event) = event else { return };
         let is_csv = |path: &Path| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
@@ -176,8 +180,19 @@ fn saves_of(file: &Path) -> Result<(impl Watcher, Receiver<Step>), notify::Error
             let _ = saved.send(step);
         }
     })?;
+    // The watcher starts a thread, does not report that it got none, and panics when it is used without.
+    if before.is_some() && before == threads() {
+        // Also when it is dropped.
+        std::mem::forget(watcher);
+        return Err(notify::Error::generic("cannot start a thread"));
+    }
     watcher.watch(folder_of(file), RecursiveMode::NonRecursive)?;
     Ok((watcher, saves))
+}
+
+/// The number of threads of this program, where the system says it.
+fn threads() -> Option<usize> {
+    std::fs::read_dir("/proc/self/task").ok().map(Iterator::count)
 }
 
 /// Runs the study as it is now, and shows its page or what is wrong.

@@ -41,6 +41,7 @@ use std::sync::Arc;
 
 use figure::{Figure, Tables};
 use order::Order;
+pub use page::script;
 
 use declare::number::{significant, with_unit};
 use studygraph::store::manifest::{Manifest, StageRecord};

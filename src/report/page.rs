@@ -217,7 +217,8 @@ pub fn html(
 }
 
 /// The page's script as `scripts/minify` makes it of `page/*.js`, without the digest of those before it.
-fn script() -> &'static str {
+#[must_use]
+pub fn script() -> &'static str {
     let text = include_str!("page/page.min.js");
     text.split_once('\n').map_or(text, |(_, script)| script)
 }

@@ -23,6 +23,11 @@ impl Watching {
     fn start(desk: &Desk) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_gearstudy"));
         command.current_dir(desk.path(".")).env_remove("GEARSTUDY_CACHE").args(["watch", "quick.yaml"]);
+        Self::of(command)
+    }
+
+    /// The same by a command that starts it.
+    fn of(mut command: Command) -> Self {
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
         let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
         let first = lines.next().unwrap().unwrap();
@@ -32,10 +37,15 @@ impl Watching {
         Self { child, port }
     }
 
+    fn connect(&self) -> TcpStream {
+        let stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
+        stream.set_read_timeout(Some(Duration::from_mins(1))).unwrap();
+        stream
+    }
+
     /// Code and body of an answer.
     fn get(&self, path: &str, host: &str) -> (u16, String) {
-        let mut stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
-        stream.set_read_timeout(Some(Duration::from_mins(1))).unwrap();
+        let mut stream = self.connect();
         write!(stream, "GET {path} HTTP/1.0\r\nHost: {host}\r\n\r\n").unwrap();
         let mut answer = String::new();
         stream.read_to_string(&mut answer).unwrap();
@@ -182,4 +192,92 @@ fn nobody_else_is_answered_and_nothing_else_is_sent() {
     let address = format!("http://127.0.0.1:{}", watching.port);
     let taken = desk.run(&["watch", "quick.yaml", "--port", &watching.port.to_string()], 1).1;
     assert!(taken.contains(&format!("cannot listen on port {}", watching.port)), "{address}: {taken}");
+}
+
+#[test]
+fn every_answer_says_what_a_browser_may_do_with_it() {
+    let desk = Desk::with("quick.yaml");
+    let watching = Watching::start(&desk);
+    watching.after(0);
+    for path in ["/", "/figures/torque.svg", "/changes?since=0", "/nothing"] {
+        let mut stream = watching.connect();
+        write!(stream, "GET {path} HTTP/1.1\r\nHost: localhost:{}\r\n\r\n", watching.port).unwrap();
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).unwrap();
+        let head = answer.split("\r\n\r\n").next().unwrap();
+        for header in [
+            "X-Content-Type-Options: nosniff",
+            "X-Frame-Options: DENY",
+            "Cross-Origin-Resource-Policy: same-origin",
+            "Content-Security-Policy: default-src 'none';",
+            "frame-ancestors 'none'",
+        ] {
+            assert!(head.contains(header), "{path}: {head}");
+        }
+        assert!(!head.contains("script-src 'unsafe-inline'") && head.contains("script-src 'sha256-"), "{head}");
+    }
+}
+
+/// Neither followed nor opened: links out of the folder, files that no manifest lists, pipes.
+#[test]
+fn only_files_of_the_results_are_opened() {
+    let desk = Desk::with("quick.yaml");
+    let watching = Watching::start(&desk);
+    watching.after(0);
+    let results = desk.path("results/quick");
+    fs::write(results.join("notes.txt"), "private").unwrap();
+    fs::write(desk.path("private"), "private").unwrap();
+    assert_eq!(watching.ask("/figures/torque.svg").0, 200);
+    for path in ["//dev/watchdog", "//dev/zero", "/notes.txt", "/./figures/torque.svg", "/figures//torque.svg"] {
+        assert_eq!(watching.ask(path).0, 404, "{path}");
+    }
+    #[cfg(unix)]
+    {
+        fs::remove_file(results.join("figures/torque.svg")).unwrap();
+        std::os::unix::fs::symlink(desk.path("private"), results.join("figures/torque.svg")).unwrap();
+        assert_eq!(watching.ask("/figures/torque.svg").0, 404, "a link out of the folder");
+        fs::remove_file(results.join("figures/torque.svg")).unwrap();
+        assert!(Command::new("mkfifo").arg(results.join("figures/torque.svg")).status().unwrap().success());
+        assert_eq!(watching.ask("/figures/torque.svg").0, 404, "a pipe");
+    }
+}
+
+/// Connections that send nothing, or a byte now and then, take no place for long; nor do many that wait for news.
+#[test]
+fn the_page_is_sent_again_after_a_crowd() {
+    let desk = Desk::with("quick.yaml");
+    let mut command = Command::new("sh");
+    let line = "ulimit -n 128; exec \"$0\" watch quick.yaml";
+    command.args(["-c", line, env!("CARGO_BIN_EXE_gearstudy")]);
+    command.current_dir(desk.path(".")).env_remove("GEARSTUDY_CACHE");
+    let watching = Watching::of(command);
+    watching.after(0);
+    let mut half_open: Vec<TcpStream> = (0..130).map(|_| watching.connect()).collect();
+    for stream in &mut half_open {
+        stream.write_all(b"GET / ").unwrap();
+    }
+    // While they last it is sent, when the first of them have had their time.
+    assert_eq!(watching.ask("/").0, 200);
+    drop(half_open);
+    assert_eq!(watching.ask("/").0, 200);
+    let waiting: Vec<TcpStream> = (0..100)
+        .map(|_| {
+            let mut stream = watching.connect();
+            write!(stream, "GET /changes?since=1 HTTP/1.1\r\nHost: localhost:{}\r\n\r\n", watching.port).unwrap();
+            stream
+        })
+        .collect();
+    let began = std::time::Instant::now();
+    assert_eq!(watching.ask("/").0, 200);
+    assert!(began.elapsed() < Duration::from_secs(10), "{:?}", began.elapsed());
+    drop(waiting);
+    // A byte a second does not make a request last.
+    let mut slow = watching.connect();
+    slow.set_read_timeout(Some(Duration::from_millis(500))).unwrap();
+    let began = std::time::Instant::now();
+    let ended = (0..60).any(|_| {
+        let sent = slow.write_all(b"G");
+        sent.is_err() || matches!(slow.read(&mut [0; 64]), Ok(_))
+    });
+    assert!(ended && began.elapsed() < Duration::from_secs(20), "{:?}", began.elapsed());
 }

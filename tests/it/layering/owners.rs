@@ -19,7 +19,7 @@ pub const OWNERS: &[(&str, &[&str])] = &[
     ("sha2", &["crates/studygraph/src/store/archive.rs"]),
     ("spdx", &["src/cli/rights.rs"]),
     ("miette", &["src/cli/"]),
-    ("lsp_server", &["src/cli/lsp.rs"]),
+    ("lsp_server", &["src/cli/lsp.rs", "src/cli/lsp/"]),
     ("notify", &["src/cli/watch.rs"]),
-    ("tiny_http", &["src/cli/serve.rs"]),
+    ("httparse", &["src/cli/serve.rs"]),
 ];

@@ -33,10 +33,16 @@ pub fn study(name: &str) -> String {
 #[must_use]
 pub fn sha256(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(64);
-    for byte in Sha256::digest(bytes) {
+    for byte in sha256_bytes(bytes) {
         text += &format!("{byte:02x}");
     }
     text
+}
+
+/// The digest itself.
+#[must_use]
+pub fn sha256_bytes(bytes: &[u8]) -> [u8; 32] {
+    Sha256::digest(bytes).into()
 }
 
 /// Why an archive cannot be used. `path` names it.
