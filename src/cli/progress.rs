@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use console::Term;
@@ -114,9 +115,10 @@ impl Watcher {
     }
 
     fn every<T>(pause: Duration, tell: impl Fn() + Send, work: impl FnOnce() -> T) -> T {
-        std::thread::scope(|scope| {
+        thread::scope(|scope| {
             let (ended, wait) = mpsc::channel::<()>();
-            scope.spawn(move || {
+            // Where the system starts no thread, the work goes on without these lines.
+            let _ = thread::Builder::new().spawn_scoped(scope, move || {
                 // The other end is dropped when the work has ended, also by a panic.
                 while wait.recv_timeout(pause) == Err(RecvTimeoutError::Timeout) {
                     tell();

@@ -5,7 +5,11 @@
 //! stopped.
 
 use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
+#[cfg(unix)]
+use std::sync::mpsc;
 use std::sync::{Arc, OnceLock};
+#[cfg(unix)]
+use std::thread;
 
 use indicatif::MultiProgress;
 
@@ -38,6 +42,18 @@ pub(super) fn stop_flag(bars: Option<MultiProgress>) -> Arc<AtomicBool> {
     Arc::clone(STOP.get_or_init(made))
 }
 
+/// Makes a write beyond the limit on the size of files (`ulimit -f`) an error that is reported, and not the end of the
+/// program. A handler and not `SIG_IGN`: programs that are started from here have the signal as it was.
+#[cfg(unix)]
+pub(super) fn report_large_files() {
+    // Without it the signal ends the program, as it did before.
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
+}
+
+/// No such signal is known.
+#[cfg(not(unix))]
+pub(super) fn report_large_files() {}
+
 #[cfg(unix)]
 fn watch(stop: &Arc<AtomicBool>, bars: Option<MultiProgress>) {
     use super::progress::aside;
@@ -45,9 +61,11 @@ fn watch(stop: &Arc<AtomicBool>, bars: Option<MultiProgress>) {
 
     let ignored = ignored();
     let heard = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
-    let Ok(mut signals) = signal_hook::iterator::Signals::new(heard) else { return };
     let flag = Arc::clone(stop);
-    std::thread::spawn(move || {
+    let (hand, handed) = mpsc::channel::<signal_hook::iterator::Signals>();
+    // First the thread: without one, signals that nobody reads would be lost.
+    let started = thread::Builder::new().name("signals".to_owned()).spawn(move || {
+        let Ok(mut signals) = handed.recv() else { return };
         for signal in signals.forever() {
             if RECEIVED.compare_exchange(0, signal, Ordering::Relaxed, Ordering::Relaxed).is_err() {
                 std::process::exit(code());
@@ -56,6 +74,12 @@ fn watch(stop: &Arc<AtomicBool>, bars: Option<MultiProgress>) {
             aside(bars.as_ref(), "gearstudy: stopping; once more to stop at once");
         }
     });
+    if started.is_ok()
+        && let Ok(signals) = signal_hook::iterator::Signals::new(heard)
+    {
+        // The thread waits for nothing else.
+        let _ = hand.send(signals);
+    }
 }
 
 /// Elsewhere nobody says what is to be done before the end.

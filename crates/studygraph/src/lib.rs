@@ -14,4 +14,5 @@ pub mod stage;
 pub mod store;
 pub mod study;
 pub mod table;
+pub mod threads;
 pub mod warning;

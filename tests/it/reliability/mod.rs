@@ -17,3 +17,5 @@ mod notes;
 mod power;
 #[cfg(target_os = "linux")]
 pub mod published;
+#[cfg(target_os = "linux")]
+mod threads;

@@ -11,6 +11,7 @@
  * SHIM_NO_FLOCK flock is not supported
  * SHIM_HOST     a file that is read instead of /proc/sys/kernel/hostname
  * SHIM_BOOT     a file that is read instead of /proc/sys/kernel/random/boot_id
+ * SHIM_THREAD   which thread cannot be started, counted from 1; with SHIM_LASTING all after it too
  * SHIM_MEMORY   which allocation fails, counted from the first look at a manifest; also written into SHIM_COUNT
  */
 #define _GNU_SOURCE
@@ -36,7 +37,7 @@
 #define INTERRUPTIONS 20
 
 static int on, lies, lasting, error_number, no_flock, armed;
-static long fail_at, count, memory_at, memory_count, next_id;
+static long fail_at, count, memory_at, memory_count, next_id, thread_at, thread_count;
 static const char *folder, *host, *boot;
 static size_t folder_length;
 static int count_file = -1, trace_file = -1;
@@ -80,6 +81,7 @@ __attribute__((constructor)) static void begin(void)
     folder = asked("SHIM_FOLDER"), folder_length = strlen(folder);
     fail_at = number("SHIM_AT"), lasting = (int)number("SHIM_LASTING"), error_number = (int)number("SHIM_ERROR");
     lies = (int)number("SHIM_LIES"), memory_at = number("SHIM_MEMORY"), no_flock = (int)number("SHIM_NO_FLOCK");
+    thread_at = number("SHIM_THREAD");
     host = asked("SHIM_HOST"), boot = asked("SHIM_BOOT");
     count_file = opened("SHIM_COUNT"), trace_file = opened("SHIM_TRACE");
     on = 1;
@@ -385,3 +387,13 @@ static int no_memory(void)
 void *malloc(size_t size) { return no_memory() ? NULL : __libc_malloc(size); }
 void *calloc(size_t number_of, size_t size) { return no_memory() ? NULL : __libc_calloc(number_of, size); }
 void *realloc(void *old, size_t size) { return no_memory() ? NULL : __libc_realloc(old, size); }
+
+int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*begin_at)(void *), void *given)
+{
+    REAL(pthread_create);
+    if (on && thread_at) {
+        long now = __atomic_add_fetch(&thread_count, 1, __ATOMIC_RELAXED);
+        if (now == thread_at || (lasting && now > thread_at)) return EAGAIN;
+    }
+    return real(thread, attributes, begin_at, given);
+}

@@ -13,6 +13,7 @@ use crate::store::cache::Cache;
 use crate::store::manifest::{FORMAT, Manifest, StageRecord, TableRecord};
 use crate::table::schema::{Column, Type};
 use crate::table::tolerance::{Allowance, find};
+use crate::threads;
 use declare::error::suggest;
 
 /// Columns that one tolerance is meant for and that are named; of more only their number is said.
@@ -401,10 +402,12 @@ impl Task<'_> {
             return table::by_record(before, after, String::new());
         }
         let cache = self.options.cache;
-        let (first, second) = rayon::join(
-            || self.before.table(&self.old.0, old, before, cache),
-            || self.after.table(&self.new.0, new, after, cache),
-        );
+        let (first, second) = threads::with_all(|| {
+            rayon::join(
+                || self.before.table(&self.old.0, old, before, cache),
+                || self.after.table(&self.new.0, new, after, cache),
+            )
+        });
         let (stage, name) = after.name.split_once('.').unwrap_or((&after.name, ""));
         for (side, file, problem) in [(self.before, &before.file, first.1), (self.after, &after.file, second.1)] {
             found.damaged.extend(problem.map(|problem| Damage {

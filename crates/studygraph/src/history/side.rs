@@ -16,6 +16,7 @@ use crate::store::manifest::{AGAIN, FileRecord, Manifest, StageRecord, TableReco
 use crate::store::parquet;
 use crate::store::results::{Folder, Known, MANIFEST, held_text, here};
 use crate::table::data::Table;
+use crate::threads;
 
 /// Where the files come from.
 enum Source {
@@ -223,15 +224,18 @@ impl Side {
             _ => Vec::new(),
         };
         let looked_at = |record: &&&TableRecord| !read(record) || !record.files.is_empty();
-        let mut found: Vec<(String, String)> = tables.par_iter().filter(looked_at).flat_map_iter(of_table).collect();
+        let mut found: Vec<(String, String)> =
+            threads::with_all(|| tables.par_iter().filter(looked_at).flat_map_iter(of_table).collect());
         let known = match &self.source {
             Source::Folder(folder) => Folder::new(folder, study).known().ok().flatten(),
             Source::Commit(_) => None,
         };
-        let others = manifest.files.par_iter().filter(|listed| here(&listed.file));
-        let others: Vec<(String, String)> = others
-            .filter_map(|listed| Some((listed.file.clone(), self.changed(study, listed, known.as_ref())?)))
-            .collect();
+        let others: Vec<(String, String)> = threads::with_all(|| {
+            let others = manifest.files.par_iter().filter(|listed| here(&listed.file));
+            others
+                .filter_map(|listed| Some((listed.file.clone(), self.changed(study, listed, known.as_ref())?)))
+                .collect()
+        });
         // What is wrong with a table's values says more than that its bytes are other ones.
         let told: Vec<String> = found.iter().map(|(file, _)| file.clone()).collect();
         found.extend(others.into_iter().filter(|(file, _)| !told.contains(file)));

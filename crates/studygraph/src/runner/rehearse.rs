@@ -13,6 +13,7 @@ use super::work::{demanded, seen};
 use crate::stage::{Ahead, Context, Inputs, RowCount};
 use crate::study::{Node, Study};
 use crate::table::data::Table;
+use crate::threads;
 use declare::error::{Diagnostic, Failure, Place};
 use declare::seed::Seed;
 use declare::work::Tally;
@@ -29,6 +30,10 @@ type Known = BTreeMap<(usize, String), Arc<Table>>;
 /// # Errors
 /// As [`Graph::new`].
 pub fn rehearse(study: &Study) -> Result<Vec<Diagnostic>, Diagnostic> {
+    threads::with_all(|| computed(study))
+}
+
+fn computed(study: &Study) -> Result<Vec<Diagnostic>, Diagnostic> {
     let graph = Graph::new(study, &[])?;
     let (mut known, mut wrong, mut left) = (Known::new(), Vec::new(), OF_ALL);
     for &node in &graph.order {

@@ -1,6 +1,9 @@
 //! What every registered method promises: points inside the box, the same sequence for the same seed, no more
 //! evaluations than its budget, sense in the face of senseless values.
 
+// A test may panic.
+#![allow(clippy::disallowed_methods)]
+
 use std::collections::BTreeMap;
 
 use proptest::prelude::*;

@@ -1,5 +1,8 @@
 //! Runs that are stopped, killed, or not alone.
 
+// A test may panic.
+#![allow(clippy::disallowed_methods)]
+
 use std::process::{Command, Stdio};
 use std::time::Instant;
 

@@ -12,6 +12,7 @@ use super::{Folder, MANIFEST, here};
 use crate::store::file;
 use crate::store::index::{self, Index, Seen};
 use crate::store::manifest::{FileRecord, Manifest, StageRecord, TableRecord};
+use crate::threads;
 
 /// What became of a published file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -209,8 +210,10 @@ impl Known {
     /// The same, with all threads: for many bytes.
     #[must_use]
     pub fn changed_in_parallel(&self) -> Vec<String> {
-        let files = self.manifest.files.par_iter();
-        files.filter(|record| self.is_changed(record)).map(|record| record.file.clone()).collect()
+        threads::with_all(|| {
+            let files = self.manifest.files.par_iter();
+            files.filter(|record| self.is_changed(record)).map(|record| record.file.clone()).collect()
+        })
     }
 
     fn is_changed(&self, record: &FileRecord) -> bool {
