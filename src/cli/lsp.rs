@@ -3,12 +3,15 @@
 //! Mistakes are those of `check`; what stands at the cursor, where it is declared and what else could stand there comes from
 //! the declarations that read a study. Messages are JSON (LSP 3.17). Must not know: what is wrong, or what anything means.
 
+mod messages;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response};
+use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response};
 use serde_json::{Value, json};
 
+use self::messages::Received;
 use super::{Ending, show};
 use crate::program::{PROGRAM, examine_text};
 use declare::error::{Diagnostic, Place};
@@ -17,39 +20,68 @@ use studygraph::study::cursor;
 /// Texts by their URI, as the editor has them.
 type Open = BTreeMap<String, String>;
 
+/// The code of a request that comes before `initialize` or after `shutdown`.
+fn out_of_turn(id: RequestId, is_after: bool) -> Response {
+    let (code, when) = if is_after {
+        (ErrorCode::InvalidRequest, "after `shutdown`")
+    } else {
+        (ErrorCode::ServerNotInitialized, "before `initialize`")
+    };
+    Response::new_err(id, code as i32, format!("this came {when}"))
+}
+
 pub(super) fn lsp() -> Result<(), Ending> {
-    let (connection, threads) = Connection::stdio();
-    let broken = |error: &dyn std::fmt::Display| Ending::Usage(format!("the editor was not understood: {error}"));
-    let capabilities = json!({
+    let (mut input, mut output) = (std::io::stdin().lock(), std::io::stdout().lock());
+    let (mut open, mut is_initialized, mut is_shut_down) = (Open::new(), false, false);
+    loop {
+        let received = messages::receive(&mut input);
+        let received = received.map_err(|error| Ending::Usage(format!("the editor was not understood: {error}")))?;
+        let answer = match received {
+            None => return Ok(()),
+            Some(Received::Refused(answer)) => Some(answer),
+            Some(Received::Message(Message::Response(_))) => None,
+            Some(Received::Message(Message::Notification(told))) => match told.method.as_str() {
+                "exit" => return Ok(()),
+                _ if is_initialized && !is_shut_down => hear(&mut open, &told).map(|told| as_json(&told)),
+                _ => None,
+            },
+            Some(Received::Message(Message::Request(request))) => Some(as_json(&match request.method.as_str() {
+                "initialize" if !is_initialized => {
+                    is_initialized = true;
+                    Response::new_ok(request.id, json!({ "capabilities": capabilities() }))
+                }
+                _ if !is_initialized || is_shut_down => out_of_turn(request.id, is_shut_down),
+                "shutdown" => {
+                    is_shut_down = true;
+                    Response::new_ok(request.id, Value::Null)
+                }
+                _ => answer(&open, request),
+            })),
+        };
+        if let Some(answer) = answer
+            && messages::send(&mut output, &answer).is_err()
+        {
+            // The editor is gone.
+            return Ok(());
+        }
+    }
+}
+
+fn capabilities() -> Value {
+    json!({
         // The whole text with each change: a study is small.
         "textDocumentSync": 1,
         "hoverProvider": true,
         "definitionProvider": true,
         "completionProvider": { "triggerCharacters": [" ", ":", ".", "[", "=", ","] },
-    });
-    let _asked = connection.initialize(capabilities).map_err(|error| broken(&error))?;
-    let mut open = Open::new();
-    for message in &connection.receiver {
-        let sent = match message {
-            Message::Request(request) => {
-                if connection.handle_shutdown(&request).map_err(|error| broken(&error))? {
-                    break;
-                }
-                connection.sender.send(Message::Response(answer(&open, request)))
-            }
-            Message::Notification(told) => match hear(&mut open, &told) {
-                Some(diagnostics) => connection.sender.send(Message::Notification(diagnostics)),
-                None => Ok(()),
-            },
-            Message::Response(_) => Ok(()),
-        };
-        if sent.is_err() {
-            // The editor is gone.
-            break;
-        }
-    }
-    drop(connection);
-    threads.join().map_err(|error| broken(&error))
+    })
+}
+
+/// A message with the version that every message states.
+fn as_json(message: &impl serde::Serialize) -> Value {
+    let mut value = json!(message);
+    value["jsonrpc"] = "2.0".into();
+    value
 }
 
 /// What is wrong with a text that the editor tells of.

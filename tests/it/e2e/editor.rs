@@ -295,3 +295,39 @@ fn an_editor_is_told_what_a_cell_is() {
     let line = quick.lines().position(|line| line == "  ste:").unwrap();
     assert_eq!(declared["range"]["start"], json!({ "line": line, "character": 2 }));
 }
+
+/// What is no message is answered, and the next one is understood; a text with half a character is one.
+#[test]
+fn what_an_editor_sends_amiss_does_not_end_it() {
+    let mut editor = Editor::start();
+    let raw = |editor: &mut Editor, body: &[u8]| {
+        editor.to.write_all(&[format!("Content-Length: {}\r\n\r\n", body.len()).as_bytes(), body].concat()).unwrap();
+    };
+    for body in [&b"{"[..], b"[]", b"{\"id\":1}", b"\xff\xfe", b"[[[[[", b""] {
+        raw(&mut editor, body);
+        assert!(editor.receive()["error"]["code"].as_i64().is_some_and(|code| code < 0), "{}", body.escape_ascii());
+    }
+    let text = quick().replace("title: Tip", "title: LONE Tip");
+    let message = json!({ "jsonrpc": "2.0", "method": "textDocument/didOpen",
+        "params": { "textDocument": { "uri": URI, "text": text } } });
+    raw(&mut editor, message.to_string().replace("LONE", "\\ud800").as_bytes());
+    assert_eq!(editor.receive()["method"], "textDocument/publishDiagnostics");
+    assert_eq!(editor.ask("shutdown", &Value::Null), Value::Null);
+
+    let ended = |head: &str, wanted: &str| {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_gearstudy"))
+            .arg("lsp")
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        child.stdin.take().unwrap().write_all(head.as_bytes()).unwrap();
+        let output = child.wait_with_output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(1) && said.contains(wanted), "{}: {said}", output.status);
+    };
+    ended("Content-Length: 999999999999999\r\n\r\n", "a message of 999999999999999 bytes, more than 64 MiB");
+    ended("Content-Length: 60000000\r\n\r\n{}", "the input ended within a message");
+    ended("hello\r\n", "`hello` is no header");
+}
