@@ -78,7 +78,7 @@ pub(super) fn run(
             None => {}
             Some(Engine::Slurm) => {
                 let profile = profile::read(elsewhere.profile.as_deref(), profile::SLURM)?;
-                let mut slurm = slurm::Slurm::new(&job, &profile)?;
+                let mut slurm = slurm::Slurm::new(&job, &profile, &stop)?;
                 if elsewhere.detach {
                     slurm.chain(places)?;
                     continue;
@@ -134,6 +134,28 @@ impl Job<'_> {
     /// Starts what is missing, level by level, until all is there. A shard that is neither there nor run by anybody any
     /// more was lost; it is started again, at most `attempts` times in all.
     fn watch(&self, starter: &mut dyn Starter, attempts: usize, stop: &AtomicBool) -> Result<(), Ending> {
+        let watched = self.watched(starter, attempts, stop);
+        watched.map_err(|ending| match ending {
+            // What a stage or a shard says is not mended by waiting.
+            Ending::Failed(_) => ending,
+            ending => self.given_up(ending, &starter.leave()),
+        })
+    }
+
+    /// An ending that says how to go on; `left` is a sentence about what goes on by itself.
+    fn given_up(&self, ending: Ending, left: &str) -> Ending {
+        let how = format!("{left}the same command goes on from here");
+        match ending {
+            Ending::Stopped => {
+                progress::aside(None, &format!("gearstudy: {how}"));
+                Ending::Stopped
+            }
+            Ending::Usage(problem) => Ending::Usage(format!("{}: {problem}; {how}", self.plan.study)),
+            other => other,
+        }
+    }
+
+    fn watched(&self, starter: &mut dyn Starter, attempts: usize, stop: &AtomicBool) -> Result<(), Ending> {
         let mut started: BTreeMap<usize, usize> = BTreeMap::new();
         for level in &self.plan.levels {
             loop {
@@ -189,8 +211,6 @@ impl Job<'_> {
         while !missing.is_empty() {
             std::thread::sleep(LOOK.max(LOOK_AT_ONE * u32::try_from(missing.len()).unwrap_or(u32::MAX)));
             if stop.load(Ordering::Relaxed) {
-                let left = starter.leave();
-                progress::aside(None, &format!("gearstudy: {left}the same command goes on from here"));
                 return Err(Ending::Stopped);
             }
             let before = missing.len();

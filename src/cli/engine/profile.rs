@@ -20,6 +20,14 @@ const ASK_EVERY: Field =
     Field::integer("ask_every", 1, 3600, "Seconds between two questions to the engine; files are seen at once.")
         .default("30");
 
+const PATIENCE: Field = Field::integer(
+    "patience",
+    0,
+    86_400,
+    "Seconds for which an engine that does not answer, or refuses for the moment, is asked again.",
+)
+.default("600");
+
 pub(super) static SLURM: &[Field] = &[
     PROGRAM,
     Field::new("partition", Shape::Text, "Partition of the jobs.").optional(),
@@ -39,6 +47,7 @@ pub(super) static SLURM: &[Field] = &[
     Field::new("before", Shape::Text, "A line of the shell before each shard, such as `module load hdf5`.").optional(),
     ATTEMPTS,
     ASK_EVERY,
+    PATIENCE,
 ];
 
 pub(super) static PARALLEL: &[Field] = &[

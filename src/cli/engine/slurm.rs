@@ -4,10 +4,11 @@
 //! itself says who is at work, whoever submitted it. Must not know: what a shard computes.
 
 use std::collections::BTreeSet;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 use super::super::Ending;
 use super::super::arguments::Places;
@@ -18,6 +19,31 @@ use studygraph::runner::shard::ranges;
 
 /// What Slurm has when nobody says.
 const ARRAY_SIZE: usize = 1001;
+/// The name of the job that merges, behind that of the plan.
+const MERGE: &str = "merge";
+
+/// The first pause before Slurm is asked again, and the longest; each is twice the one before.
+const FIRST_PAUSE: Duration = Duration::from_secs(1);
+const LONGEST_PAUSE: Duration = Duration::from_mins(1);
+/// How often a pause looks whether somebody asked to stop.
+const LOOK: Duration = Duration::from_millis(100);
+/// Characters of an answer that is shown.
+const SHOWN: usize = 200;
+/// What sbatch says where it, or the site's limit on jobs, refuses for the moment. All else is wrong with the job.
+const PASSING: [&str; 12] = [
+    "timed out",
+    "timeout",
+    "unable to contact",
+    "connection refused",
+    "connection reset",
+    "communication connection failure",
+    "temporarily unavailable",
+    "temporarily disabled",
+    "zero bytes were transmitted",
+    "slurm backup controller in standby mode",
+    "too many",
+    "limit",
+];
 
 pub(super) struct Slurm<'a> {
     job: &'a Job<'a>,
@@ -25,26 +51,85 @@ pub(super) struct Slurm<'a> {
     /// Elements count from 0 to one less.
     array_size: usize,
     program: String,
+    stop: &'a AtomicBool,
+    /// The shards that were in the queue when it was seen last, or were submitted since.
+    queued: BTreeSet<usize>,
+}
+
+/// An element of a job in the queue.
+struct Element {
+    /// What the name of the job has behind that of the plan: its first shard, or `merge`.
+    name: String,
+    element: Option<usize>,
+    /// The number of the job.
+    job: Option<String>,
+}
+
+impl Element {
+    fn shard(&self) -> Option<usize> {
+        Some(self.name.parse::<usize>().ok()? + self.element?)
+    }
+}
+
+/// Why a command of Slurm gave no answer.
+enum Unanswered {
+    /// It may give one later.
+    Passing(String),
+    Final(Ending),
 }
 
 impl<'a> Slurm<'a> {
     /// # Errors
     /// When there is no Slurm that answers.
-    pub(super) fn new(job: &'a Job<'a>, profile: &'a Record) -> Result<Self, Ending> {
-        let said = ask("scontrol", &["show".into(), "config".into()], None)?;
+    pub(super) fn new(job: &'a Job<'a>, profile: &'a Record, stop: &'a AtomicBool) -> Result<Self, Ending> {
+        made(&job.folder.join("logs"))?;
+        let program = program(profile)?;
+        let mut slurm = Self { job, profile, array_size: ARRAY_SIZE, program, stop, queued: BTreeSet::new() };
+        let said = slurm.patiently(|_| ask("scontrol", &["show".into(), "config".into()], None))?;
         let site =
             said.lines().find_map(|line| line.strip_prefix("MaxArraySize")?.split('=').nth(1)?.trim().parse().ok());
-        let array_size = maybe_number(profile, "array_size").or(site).unwrap_or(ARRAY_SIZE).max(2);
-        made(&job.folder.join("logs"))?;
-        Ok(Self { job, profile, array_size, program: program(profile)? })
+        slurm.array_size = maybe_number(profile, "array_size").or(site).unwrap_or(ARRAY_SIZE).max(2);
+        Ok(slurm)
     }
 
     fn prefix(&self) -> String {
         format!("gs-{}-", &self.job.plan.digest[..12])
     }
 
-    /// Submits a script; the number of its job.
-    fn submit(&self, name: &str, options: &[String], script: &str) -> Result<String, Ending> {
+    /// Asks until there is an answer, with longer and longer pauses, as long as the profile says.
+    fn patiently<T>(&self, mut ask: impl FnMut(&Self) -> Result<T, Unanswered>) -> Result<T, Ending> {
+        let (began, patience) = (Instant::now(), Duration::from_secs(number(self.profile, "patience") as u64));
+        let mut pause = FIRST_PAUSE.min(self.ask_every());
+        loop {
+            let problem = match ask(self) {
+                Ok(answer) => return Ok(answer),
+                Err(Unanswered::Final(ending)) => return Err(ending),
+                Err(Unanswered::Passing(problem)) => problem,
+            };
+            if began.elapsed() + pause > patience {
+                return Err(Ending::Usage(problem));
+            }
+            self.job.tell(&format!("{problem}; asking again in {} s", pause.as_secs()));
+            let until = Instant::now() + pause;
+            while Instant::now() < until {
+                if self.stop.load(Ordering::Relaxed) {
+                    return Err(Ending::Stopped);
+                }
+                std::thread::sleep(LOOK);
+            }
+            pause = (2 * pause).min(LONGEST_PAUSE);
+        }
+    }
+
+    /// Submits a script; the number of its job. `is_there` finds it in the queue: sbatch may have failed after the job was
+    /// taken.
+    fn submit(
+        &self,
+        name: &str,
+        options: &[String],
+        script: &str,
+        is_there: &dyn Fn(&Element) -> bool,
+    ) -> Result<String, Ending> {
         let mut all = vec!["--parsable".to_owned(), format!("--job-name={name}")];
         for (field, option) in [("partition", "partition"), ("account", "account"), ("time", "time"), ("memory", "mem")]
         {
@@ -54,16 +139,40 @@ impl<'a> Slurm<'a> {
         all.extend(words(self.profile, "options"));
         all.extend_from_slice(options);
         let before = self.profile.maybe_text("before").map(|line| format!("{line}\n")).unwrap_or_default();
-        let said = ask("sbatch", &all, Some(&format!("#!/bin/sh\n{before}{script}\n")))?;
-        // `number` or `number;cluster`.
-        Ok(said.trim().split(';').next().unwrap_or_default().to_owned())
+        let script = format!("#!/bin/sh\n{before}{script}\n");
+        let mut is_first = true;
+        self.patiently(|slurm| {
+            if !std::mem::take(&mut is_first)
+                && let Some(found) = slurm.queue_once()?.into_iter().find(is_there)
+            {
+                return Ok(found.job.unwrap_or_default());
+            }
+            let said = match ask("sbatch", &all, Some(&script)) {
+                // What is wrong with the job is so every time.
+                Err(Unanswered::Passing(problem)) if !is_passing(&problem) => {
+                    return Err(Unanswered::Final(Ending::Usage(problem)));
+                }
+                said => said?,
+            };
+            if let Some(job) = job_number(&said) {
+                return Ok(job.to_owned());
+            }
+            // The job was taken, so another one is not sent for it.
+            if let Some(job) = slurm.queue_once()?.into_iter().find(is_there).and_then(|found| found.job) {
+                return Ok(job);
+            }
+            let said: String = said.trim().escape_debug().take(SHOWN).collect();
+            let problem = format!("`sbatch` did not say the number of its job as its last line, but `{said}`");
+            Err(Unanswered::Final(Ending::Usage(problem)))
+        })
     }
 
     /// Submits arrays for these shards; the numbers of the jobs.
-    fn arrays(&self, shards: &[usize], after: &str) -> Result<Vec<String>, Ending> {
+    fn arrays(&mut self, shards: &[usize], after: &str) -> Result<Vec<String>, Ending> {
         let mut jobs = Vec::new();
-        for block in shards.chunk_by(|one, next| one / self.array_size == next / self.array_size) {
-            let first = block[0] / self.array_size * self.array_size;
+        let size = self.array_size;
+        for block in shards.chunk_by(|one, next| one / size == next / size) {
+            let first = block[0] / size * size;
             let elements = ranges(block.iter().map(|shard| shard - first));
             let throttle = maybe_number(self.profile, "at_once").map(|most| format!("%{most}")).unwrap_or_default();
             let mut options = vec![
@@ -79,26 +188,53 @@ impl<'a> Slurm<'a> {
                 quoted(&self.job.folder.to_string_lossy()),
                 number(self.profile, "processors")
             );
-            jobs.push(self.submit(&format!("{}{first}", self.prefix()), &options, &script)?);
+            let is_there = |found: &Element| found.shard().is_some_and(|shard| block.contains(&shard));
+            jobs.push(self.submit(&format!("{}{first}", self.prefix()), &options, &script, &is_there)?);
+            self.queued.extend(block);
         }
         Ok(jobs)
     }
 
-    /// Submits all levels and the merge, each after the one before; nobody watches them.
+    /// Submits all levels and the merge, each after the one before, or what is not in the queue yet of a chain that was
+    /// begun; nobody watches them.
     ///
     /// # Errors
-    /// When Slurm refuses.
-    pub(super) fn chain(&self, places: &Places) -> Result<(), Ending> {
-        let live = self.elements()?;
-        if !live.is_empty() {
-            return Err(Ending::Usage(format!("shards {} are in the queue already", ranges(live))));
+    /// When Slurm refuses; when all is in the queue already.
+    pub(super) fn chain(&mut self, places: &Places) -> Result<(), Ending> {
+        let chained = self.chained(places);
+        chained.map_err(|ending| self.job.given_up(ending, &self.in_queue(" without a merge")))
+    }
+
+    fn chained(&mut self, places: &Places) -> Result<(), Ending> {
+        let queue = self.queue()?;
+        let live: BTreeSet<usize> = queue.iter().filter_map(Element::shard).collect();
+        if let Some(merge) = queue.iter().find(|found| found.name == MERGE) {
+            let number = merge.job.as_deref().map(|job| format!(", job {job},")).unwrap_or_default();
+            let shards = if live.is_empty() { String::new() } else { format!("shards {} and ", ranges(live)) };
+            return Err(Ending::Usage(format!("{shards}the merge{number} are in the queue already")));
+        }
+        if let Some(nameless) = queue.iter().find(|found| found.shard().is_some() && found.job.is_none()) {
+            let shard = nameless.shard().unwrap_or_default();
+            return Err(Ending::Usage(format!(
+                "shard {shard} is in the queue already, and Slurm does not say in which job"
+            )));
         }
         let mut after = String::new();
         let mut all = Vec::new();
         for level in &self.job.plan.levels {
             let missing = self.job.missing(level.first..level.end)?;
+            let (begun, missing): (Vec<usize>, Vec<usize>) =
+                missing.into_iter().partition(|shard| live.contains(shard));
+            let of_level = |found: &&Element| found.shard().is_some_and(|shard| begun.contains(&shard));
+            let begun: BTreeSet<String> = queue.iter().filter(of_level).filter_map(|found| found.job.clone()).collect();
+            let mut jobs: Vec<String> = begun.into_iter().collect();
             if !missing.is_empty() {
-                let jobs = self.arrays(&missing, &after)?;
+                jobs.extend(self.arrays(&missing, &after)?);
+            }
+            if jobs.iter().any(String::is_empty) {
+                return Err(Ending::Usage("`squeue` did not say the numbers of the jobs".to_owned()));
+            }
+            if !jobs.is_empty() {
                 after = jobs.join(":");
                 all.extend(jobs);
             }
@@ -116,24 +252,56 @@ impl<'a> Slurm<'a> {
         if !after.is_empty() {
             options.extend([format!("--dependency=afterok:{after}"), "--kill-on-invalid-dep=yes".to_owned()]);
         }
-        let merge = self.submit(&format!("{}merge", self.prefix()), &options, &script)?;
+        let is_there = |found: &Element| found.name == MERGE;
+        let merge = self.submit(&format!("{}{MERGE}", self.prefix()), &options, &script, &is_there)?;
         let shards = if all.is_empty() { String::new() } else { format!("jobs {} for the shards, ", all.join(", ")) };
         self.job.tell(&format!("submitted: {shards}job {merge} for the merge; `{}`", self.job.folder.display()));
         Ok(())
     }
 
-    /// The shards that wait or run.
-    fn elements(&self) -> Result<BTreeSet<usize>, Ending> {
-        let words = ["--noheader", "--array", "--me", "--format=%j|%K"].map(str::to_owned);
-        let said = ask("squeue", &words, None)?;
-        let mut shards = BTreeSet::new();
-        for line in said.lines() {
-            let Some((name, element)) = line.trim().split_once('|') else { continue };
-            let Some(Ok(first)) = name.strip_prefix(&self.prefix()).map(str::parse::<usize>) else { continue };
-            shards.extend(element.parse::<usize>().map(|element| first + element));
-        }
-        Ok(shards)
+    /// What is in the queue of this plan.
+    fn queue(&mut self) -> Result<Vec<Element>, Ending> {
+        let queue = self.patiently(Self::queue_once)?;
+        self.queued = queue.iter().filter_map(Element::shard).collect();
+        Ok(queue)
     }
+
+    fn queue_once(&self) -> Result<Vec<Element>, Unanswered> {
+        let words = ["--noheader", "--array", "--me", "--format=%j|%K|%F"].map(str::to_owned);
+        let said = ask("squeue", &words, None)?;
+        let prefix = self.prefix();
+        let element = |line: &str| {
+            let mut fields = line.trim().split('|');
+            let name = fields.next()?.strip_prefix(&prefix)?.to_owned();
+            let element = fields.next()?.parse().ok();
+            Some(Element { name, element, job: fields.next().and_then(job_number).map(str::to_owned) })
+        };
+        Ok(said.lines().filter_map(element).collect())
+    }
+
+    /// Which shards are in the queue, and what ends them.
+    fn in_queue(&self, how: &str) -> String {
+        if self.queued.is_empty() {
+            return String::new();
+        }
+        let (shards, prefix) = (ranges(self.queued.iter().copied()), self.prefix());
+        format!("shards {shards} are in the queue{how} and go on (`scancel --me --name={prefix}…` ends them); ")
+    }
+}
+
+/// The number of the job that sbatch has taken: the last line that is `number` or `number;cluster`. Sites print more before.
+fn job_number(said: &str) -> Option<&str> {
+    let number = |line: &str| {
+        let (number, cluster) = line.split_once(';').unwrap_or((line, "-"));
+        let is_number = !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit());
+        (is_number && !cluster.is_empty() && !cluster.contains(char::is_whitespace)).then_some(number.len())
+    };
+    said.lines().rev().map(str::trim).find_map(|line| number(line).map(|length| &line[..length]))
+}
+
+fn is_passing(problem: &str) -> bool {
+    let problem = problem.to_ascii_lowercase();
+    PASSING.iter().any(|words| problem.contains(words))
 }
 
 impl Starter for Slurm<'_> {
@@ -142,7 +310,7 @@ impl Starter for Slurm<'_> {
     }
 
     fn live(&mut self) -> Result<BTreeSet<usize>, Ending> {
-        self.elements()
+        Ok(self.queue()?.iter().filter_map(Element::shard).collect())
     }
 
     fn ask_every(&self) -> Duration {
@@ -150,24 +318,67 @@ impl Starter for Slurm<'_> {
     }
 
     fn leave(&mut self) -> String {
-        format!("the jobs go on (`scancel --me --name={}…` ends them); ", self.prefix())
+        self.in_queue("")
     }
 }
 
 /// What a command of Slurm says.
-fn ask(command: &str, words: &[String], input: Option<&str>) -> Result<String, Ending> {
-    let wrong = |problem: String| Ending::Usage(format!("`{command}`: {problem}"));
+fn ask(command: &str, words: &[String], input: Option<&str>) -> Result<String, Unanswered> {
+    let wrong = |problem: String| format!("`{command}`: {problem}");
     let stdin = if input.is_some() { Stdio::piped() } else { Stdio::null() };
     let child = Command::new(command).args(words).stdin(stdin).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
-    let mut child = child.map_err(|error| wrong(format!("{error}; is Slurm on this machine?")))?;
+    let mut child = child.map_err(|error| match error.kind() {
+        ErrorKind::NotFound | ErrorKind::PermissionDenied => {
+            Unanswered::Final(Ending::Usage(wrong(format!("{error}; is Slurm on this machine?"))))
+        }
+        // This machine has no process to give at the moment.
+        _ => Unanswered::Passing(wrong(error.to_string())),
+    })?;
     if let (Some(input), Some(mut stdin)) = (input, child.stdin.take()) {
         // Whoever does not read it says why when it ends.
         let _ = stdin.write_all(input.as_bytes());
     }
-    let output = child.wait_with_output().map_err(|error| wrong(error.to_string()))?;
+    let output = child.wait_with_output().map_err(|error| Unanswered::Passing(wrong(error.to_string())))?;
     if output.status.success() {
         return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
     }
     let said = String::from_utf8_lossy(&output.stderr);
-    Err(wrong(said.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join("; ")))
+    let lines: Vec<&str> = said.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+    let said = if lines.is_empty() { output.status.to_string() } else { lines.join("; ") };
+    Err(Unanswered::Passing(wrong(said)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{is_passing, job_number};
+
+    /// sbatch(1), `--parsable`: the number, and behind a semicolon the cluster if there is one.
+    #[test]
+    fn the_number_of_a_job_is_the_last_line_that_is_one() {
+        for (said, expected) in [
+            ("101\n", Some("101")),
+            ("101;ci\n", Some("101")),
+            ("-----\n  Welcome to the site\n-----\n101\n", Some("101")),
+            ("No reservation 7\n 101;ci \n\nbye\n", Some("101")),
+            ("-----\n", None),
+            ("", None),
+            ("Submitted batch job 101\n", None),
+            ("101;\n", None),
+            ("101; two words\n", None),
+        ] {
+            assert_eq!(job_number(said), expected, "{said:?}");
+        }
+    }
+
+    #[test]
+    fn a_busy_service_is_told_from_a_wrong_job() {
+        for passing in [
+            "`sbatch`: sbatch: error: Batch job submission failed: Socket timed out on send/recv operation",
+            "`sbatch`: sbatch: error: AssocMaxSubmitJobLimit; Job violates accounting/QOS policy (job submit limit, …)",
+            "`sbatch`: Unable to contact slurm controller (connect failure)",
+        ] {
+            assert!(is_passing(passing), "{passing}");
+        }
+        assert!(!is_passing("`sbatch`: error: invalid partition specified: no_such"));
+    }
 }

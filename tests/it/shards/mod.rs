@@ -1,6 +1,7 @@
 //! A study in pieces, as a user runs it: by hand, by Slurm, GNU Parallel and Snakemake, with pieces that are killed. Whoever
 //! runs it, what is published is what one run publishes, byte for byte.
 
+mod busy;
 mod kills;
 mod parallel;
 mod slurm;
