@@ -1,11 +1,12 @@
 //! Reading an archive that anybody may have made: everything is checked before anything is used.
 //!
-//! Nothing is ever written under a name from the archive; names only find entries. Must not know: what the entries mean.
+//! It is a zip file, or a folder into which one was unpacked; the crate may be in a folder inside. Nothing is ever written
+//! under a name from the archive; names only find entries. Must not know: what the entries mean.
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{BufReader, Read, Seek, Write};
-use std::path::Path;
+use std::fs::{self, File};
+use std::io::{self, BufReader, Read, Seek, Write};
+use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 use zip::read::Config;
@@ -14,6 +15,7 @@ use zip::unstable::read::ZipIterable;
 use zip::{CompressionMethod, ZipArchive};
 
 use super::{ArchiveError, METADATA, sha256};
+use crate::store::file;
 
 /// An archive has a few dozen entries.
 pub const MOST_ENTRIES: usize = 10_000;
@@ -34,22 +36,37 @@ const FOLDER: u32 = 0o040_000;
 pub struct Archive<R> {
     /// For messages.
     path: String,
-    zip: ZipArchive<R>,
-    /// Files by name; folders are left out.
+    files: Files<R>,
+    /// Files of the crate by name; folders are left out.
     entries: BTreeMap<String, usize>,
+    /// Files beside the folder that the crate is in.
+    outside: Vec<String>,
 }
 
-/// Opens and checks a file.
+/// Where the bytes of entries are.
+enum Files<R> {
+    Zip(ZipArchive<R>),
+    Folder(Vec<PathBuf>),
+}
+
+/// Opens and checks a zip file, the folder of an unpacked one, or the description in that folder.
 ///
 /// # Errors
 /// [`ArchiveError`]: what is wrong with it.
 pub fn open(path: &Path) -> Result<Archive<BufReader<File>>, ArchiveError> {
     let name = path.display().to_string();
-    let unreadable =
-        |error: std::io::Error| ArchiveError::Unreadable { path: name.clone(), problem: error.to_string() };
+    let unreadable = |error: io::Error| ArchiveError::Unreadable { path: name.clone(), problem: error.to_string() };
+    let facts = fs::metadata(path).map_err(unreadable)?;
+    if facts.is_dir() {
+        return Archive::of_folder(path, &name);
+    }
     // Not opened yet: a pipe nobody writes to would be waited for.
-    if !std::fs::metadata(path).map_err(unreadable)?.is_file() {
-        return Err(ArchiveError::NoArchive { path: name, problem: "it is not a file".to_owned() });
+    if !facts.is_file() {
+        return Err(ArchiveError::NoArchive { path: name, problem: "it is neither a file nor a folder".to_owned() });
+    }
+    if path.file_name().is_some_and(|own| own == METADATA) {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        return Archive::of_folder(folder, &name);
     }
     Archive::check(BufReader::new(File::open(path).map_err(unreadable)?), &name)
 }
@@ -103,9 +120,9 @@ impl<R: Read + Seek> Archive<R> {
         let mut zip = ZipArchive::new(reader).map_err(|error| no_archive(&path, &error))?;
         // Two readers must see the same: names in both directories, no entry inside another, none that is not listed.
         zip.validate_header_consistency().map_err(|error| damaged(&path, &error))?;
-        let mut archive = Self { path: path.clone(), zip, entries: BTreeMap::new() };
-        for index in 0..archive.zip.len() {
-            let mut entry = archive.zip.by_index(index).map_err(|error| damaged(&path, &error))?;
+        let mut entries = BTreeMap::new();
+        for index in 0..zip.len() {
+            let mut entry = zip.by_index(index).map_err(|error| damaged(&path, &error))?;
             let name = String::from_utf8_lossy(entry.name_raw()).into_owned();
             let size = entry.size();
             copy(&mut entry, size, &mut std::io::sink()).map_err(|problem| ArchiveError::Damaged {
@@ -113,14 +130,76 @@ impl<R: Read + Seek> Archive<R> {
                 problem: format!("`{name}`: {problem}"),
             })?;
             if !name.ends_with('/') {
-                archive.entries.insert(name, index);
+                entries.insert(name, index);
             }
         }
-        if archive.entries.len() != names.keys().filter(|name| !name.ends_with('/')).count() {
+        if entries.len() != names.keys().filter(|name| !name.ends_with('/')).count() {
             return Err(refused("its two directories differ".to_owned()));
         }
+        Self::of_entries(path.clone(), Files::Zip(zip), entries)
+    }
+
+    /// The crate among files that were checked.
+    fn of_entries(path: String, files: Files<R>, mut entries: BTreeMap<String, usize>) -> Result<Self, ArchiveError> {
+        entries.retain(|name, _| !is_of_a_system(name));
+        let mut outside = Vec::new();
+        let mut descriptions = entries.keys().filter_map(|name| name.strip_suffix(METADATA)?.strip_suffix('/'));
+        let (folder, others) = (descriptions.next().map(|folder| format!("{folder}/")), descriptions.next());
+        if let Some(folder) = folder.filter(|_| !entries.contains_key(METADATA) && others.is_none()) {
+            let (inside, beside): (Vec<_>, Vec<_>) =
+                entries.into_iter().partition(|(name, _)| name.starts_with(&folder));
+            outside = beside.into_iter().map(|(name, _)| name).collect();
+            entries = inside.into_iter().map(|(name, index)| (name[folder.len()..].to_owned(), index)).collect();
+        }
+        let mut archive = Self { path, files, entries, outside };
         archive.described()?;
         Ok(archive)
+    }
+
+    /// Lists everything in a folder; `name` is for messages.
+    fn of_folder(folder: &Path, name: &str) -> Result<Self, ArchiveError> {
+        let refused = |problem: String| ArchiveError::Refused { path: name.to_owned(), problem };
+        let unreadable = |path: &Path, error: io::Error| ArchiveError::Unreadable {
+            path: path.display().to_string(),
+            problem: error.to_string(),
+        };
+        let (mut files, mut entries, mut bytes) = (Vec::new(), BTreeMap::new(), 0_u64);
+        let mut folders = vec![(folder.to_owned(), String::new())];
+        while let Some((folder, inside)) = folders.pop() {
+            for entry in fs::read_dir(&folder).map_err(|error| unreadable(&folder, error))? {
+                let entry = entry.map_err(|error| unreadable(&folder, error))?;
+                let own = entry.file_name();
+                let own = own.to_str().ok_or_else(|| refused(format!("the name `{}` is not UTF-8", own.display())))?;
+                let (path, inside) = (entry.path(), format!("{inside}{own}"));
+                if is_of_a_system(&inside) {
+                    continue;
+                }
+                let facts = entry.metadata().map_err(|error| unreadable(&path, error))?;
+                let problem = match safe(&inside) {
+                    Err(problem) => Some(problem),
+                    Ok(()) if facts.is_symlink() => Some("is a symbolic link"),
+                    Ok(()) if !facts.is_file() && !facts.is_dir() => Some("is neither a file nor a folder"),
+                    Ok(()) => None,
+                };
+                if let Some(problem) = problem {
+                    return Err(refused(format!("the entry `{}` {problem}", inside.escape_debug())));
+                }
+                if facts.is_dir() {
+                    folders.push((path, inside + "/"));
+                    continue;
+                }
+                bytes = bytes.saturating_add(facts.len());
+                entries.insert(inside, files.len());
+                files.push(path);
+                if files.len() > MOST_ENTRIES {
+                    return Err(refused(format!("it has more than {MOST_ENTRIES} entries")));
+                }
+                if bytes > MOST_BYTES {
+                    return Err(refused(format!("it is larger than {} MiB", MOST_BYTES >> 20)));
+                }
+            }
+        }
+        Self::of_entries(name.to_owned(), Files::Folder(files), entries)
     }
 
     /// The names of its files, sorted.
@@ -138,7 +217,17 @@ impl<R: Read + Seek> Archive<R> {
             let problem = format!("it has no `{name}`");
             return Err(ArchiveError::NoArchive { path, problem });
         };
-        let mut entry = self.zip.by_index(index).map_err(|error| damaged(&path, &error))?;
+        let zip = match &mut self.files {
+            Files::Zip(zip) => zip,
+            Files::Folder(files) => {
+                let unreadable = |error: io::Error| ArchiveError::Unreadable {
+                    path: files[index].display().to_string(),
+                    problem: error.to_string(),
+                };
+                return file::read(&files[index], MOST_BYTES).map_err(unreadable);
+            }
+        };
+        let mut entry = zip.by_index(index).map_err(|error| damaged(&path, &error))?;
         let size = entry.size();
         let mut bytes = Vec::new();
         copy(&mut entry, size, &mut bytes)
@@ -179,7 +268,10 @@ impl<R: Read + Seek> Archive<R> {
         let Some(&index) = self.entries.get(METADATA) else {
             return Err(no(format!("it has no `{METADATA}`, which says what is in it")));
         };
-        let size = self.zip.by_index(index).map_or(0, |entry| entry.size());
+        let size = match &mut self.files {
+            Files::Zip(zip) => zip.by_index(index).map_or(0, |entry| entry.size()),
+            Files::Folder(files) => fs::metadata(&files[index]).map_or(0, |facts| facts.len()),
+        };
         if size > LARGEST_METADATA {
             return Err(no(format!("`{METADATA}` is larger than {} MiB", LARGEST_METADATA >> 20)));
         }
@@ -202,9 +294,10 @@ impl<R: Read + Seek> Archive<R> {
         let listed: BTreeMap<&str, Option<&str>> =
             files.filter_map(|entity| Some((entity["@id"].as_str()?, entity["sha256"].as_str()))).collect();
         let names: Vec<String> = self.entries.keys().filter(|name| *name != METADATA).cloned().collect();
-        let mut wrong = Vec::new();
+        let mut wrong: Vec<String> = self.outside.iter().map(|name| format!("`{name}` was added")).collect();
         for name in &names {
             match listed.get(name.as_str()) {
+                None if is_preview(name) => {}
                 None => wrong.push(format!("`{name}` was added")),
                 Some(None) => wrong.push(format!("`{name}` has no digest")),
                 Some(Some(digest)) if sha256(&self.bytes(name)?) != digest.to_ascii_lowercase() => {
@@ -231,6 +324,18 @@ impl<R: Read + Seek> Archive<R> {
 /// Whether an identifier is none of a file in the archive.
 fn elsewhere(id: &str) -> bool {
     ["http://", "https://", "#"].iter().any(|start| id.starts_with(start))
+}
+
+/// Whether a file is one that systems add to folders of others, or hide.
+fn is_of_a_system(name: &str) -> bool {
+    let is_one = |part: &str| part.starts_with('.') || ["__MACOSX", "Thumbs.db", "desktop.ini"].contains(&part);
+    // `..` is refused by its name.
+    name.split('/').any(|part| is_one(part) && part != "..")
+}
+
+/// Whether a file belongs to the page that RO-Crate lets anybody add to a crate.
+fn is_preview(name: &str) -> bool {
+    name == "ro-crate-preview.html" || name.starts_with("ro-crate-preview_files/")
 }
 
 /// What is wrong with a name.

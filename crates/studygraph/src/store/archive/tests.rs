@@ -1,6 +1,8 @@
 //! Archives made here come back; every way known to make a bad one is refused; mutated ones never panic.
 
+use std::fs;
 use std::io::{Cursor, Write};
+use std::path::Path;
 
 use chacha20::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
@@ -97,6 +99,51 @@ fn what_is_packed_comes_back_and_is_the_same_bytes_again() {
     assert_eq!(bytes.windows(4).filter(|window| **window == [0, 0, 0x21, 0]).count(), 2 * entries().len());
 }
 
+/// As systems and other programs hand crates on: unpacked, in a folder, with files of their own.
+#[test]
+fn crates_are_read_unpacked_and_in_a_folder_and_beside_files_of_systems() {
+    let mut entries = digested();
+    for extra in
+        [".DS_Store", "results/.DS_Store", "__MACOSX/._a.yaml", "ro-crate-preview.html", "ro-crate-preview_files/a.css"]
+    {
+        entries.insert(extra.to_owned(), b"x".to_vec());
+    }
+    let inside: Entries = entries.iter().map(|(name, bytes)| (format!("up/crate/{name}"), bytes.clone())).collect();
+    for entries in [&entries, &inside] {
+        let mut archive = check(&pack(entries).unwrap()).unwrap();
+        archive.intact().unwrap();
+        assert_eq!((archive.described().unwrap(), archive.bytes(TABLE).unwrap()), (STUDY.to_owned(), vec![7; 300]));
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in &inside {
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, bytes).unwrap();
+    }
+    let own = folder.path().join("up/crate");
+    for path in [folder.path(), &own, &own.join(METADATA)] {
+        let mut archive = open(path).unwrap();
+        archive.intact().unwrap();
+        assert_eq!((archive.described().unwrap(), archive.bytes(TABLE).unwrap()), (STUDY.to_owned(), vec![7; 300]));
+    }
+    // Files beside the crate are added ones, as those inside are.
+    fs::write(folder.path().join("more"), "").unwrap();
+    fs::write(own.join("more"), "").unwrap();
+    let said = open(folder.path()).unwrap().intact().unwrap_err().to_string();
+    assert!(said.contains("`more` was added, `more` was added"), "{said}");
+    fs::remove_file(own.join(TABLE)).unwrap();
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("/etc/passwd", own.join(TABLE)).unwrap();
+        let said = open(&own).err().unwrap().to_string();
+        assert!(said.contains("the entry `results/a/t.parquet` is a symbolic link"), "{said}");
+    }
+    // Two crates are not one.
+    let mut two = inside.clone();
+    two.extend(digested().into_iter().map(|(name, bytes)| (format!("other/{name}"), bytes)));
+    refused(&pack(&two).unwrap(), "has no `ro-crate-metadata.json`");
+}
+
 #[test]
 fn names_that_lead_elsewhere_are_refused() {
     let plain = SimpleFileOptions::default();
@@ -190,7 +237,7 @@ fn damage_is_found_wherever_it_is() {
     }
     refused(&patched(&bytes, &[7; 300], &[8; 300]), "`results/a/t.parquet`: ");
     assert!(open(std::path::Path::new("/no/such/file")).is_err_and(|error| error.to_string().contains("cannot read")));
-    assert!(open(std::path::Path::new("/")).is_err_and(|error| error.to_string().contains("it is not a file")));
+    assert!(open(Path::new("/dev/null")).is_err_and(|error| error.to_string().contains("neither a file nor a folder")));
 }
 
 #[test]
