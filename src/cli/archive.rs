@@ -80,6 +80,7 @@ pub(super) fn archive(
     let described = metadata(&description).map_err(usage)?;
     entries.insert(METADATA.to_owned(), described);
     let bytes = pack(&entries).map_err(usage)?;
+    file::sweep_ended(output.parent().unwrap_or(Path::new("")));
     file::write(output, &bytes, Durability::Synced).map_err(|error| Ending::Usage(error.to_string()))?;
     if as_json {
         json::answer(&json!({

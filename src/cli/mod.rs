@@ -22,6 +22,7 @@ mod query;
 mod report;
 mod rights;
 pub mod run;
+mod scratch;
 mod serve;
 mod shard;
 pub mod show;
@@ -108,6 +109,7 @@ pub fn main(words: impl Iterator<Item = OsString>) -> i32 {
     if let Some(code) = complete::asked() {
         return code;
     }
+    signals::report_large_files();
     let arguments = match Arguments::try_parse_from(words) {
         Ok(arguments) => arguments,
         Err(error) => {

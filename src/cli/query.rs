@@ -3,6 +3,7 @@
 //! Must not know: how a query is answered.
 
 use std::path::Path;
+use std::time::Duration;
 
 use serde_json::Value;
 
@@ -50,7 +51,8 @@ pub(super) fn query(asked: &Question, places: &Places, quiet: bool) -> Result<()
         }
         return Ok(());
     };
-    let answer = ask(text, &mut tables).map_err(Ending::Query)?;
+    let limit = Duration::from_secs(asked.timeout.into());
+    let answer = ask(text, &mut tables, limit).map_err(Ending::Query)?;
     match (asked.output.as_deref(), target) {
         (Some(path), Some(target)) => write(&answer, path, target, quiet),
         _ => {
@@ -121,6 +123,7 @@ fn write(answer: &Answer, path: &Path, target: Target, quiet: bool) -> Result<()
             parquet::write(&table).map_err(|error| Ending::Usage(error.to_string()))?
         }
     };
+    file::sweep_ended(path.parent().unwrap_or(Path::new("")));
     file::write(path, &bytes, Durability::Lazy).map_err(|error| Ending::Usage(error.to_string()))?;
     let rows = answer.columns.first().map_or(0, |column| column.cells.len());
     if !quiet {

@@ -145,7 +145,9 @@ mod tests {
         ] {
             assert_eq!(license(given).as_deref(), Ok(expected));
         }
-        for wrong in ["MIT OR", "MIT Apache-2.0", "(MIT", "MIT)", "OR", "MIT WITH ISC", "Classpath-exception-2.0", "MIT/ISC"] {
+        for wrong in
+            ["MIT OR", "MIT Apache-2.0", "(MIT", "MIT)", "OR", "MIT WITH ISC", "Classpath-exception-2.0", "MIT/ISC"]
+        {
             assert!(license(wrong).unwrap_err().contains("no SPDX "), "{wrong}: {:?}", license(wrong));
         }
     }

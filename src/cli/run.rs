@@ -15,6 +15,7 @@ use super::events::{self, Lines};
 use super::pages::{self, Counts};
 use super::plan::{plan_json, plan_text};
 use super::progress::{self, Watcher, duration, out, tell};
+use super::scratch::Scratch;
 use super::signals::stop_flag;
 use super::{Ending, draw, json, studies};
 use crate::program::PROGRAM;
@@ -280,7 +281,7 @@ pub(super) fn plan_of(study: &Study, places: &Places, options: &Options) -> Resu
     let root = if places.cache.exists() {
         places.cache.as_path()
     } else {
-        elsewhere = tempfile::tempdir().map_err(|error| Ending::Usage(format!("no temporary folder: {error}")))?;
+        elsewhere = Scratch::new()?;
         elsewhere.path()
     };
     // As a run, which does without one that cannot be opened.

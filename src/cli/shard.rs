@@ -8,6 +8,7 @@ use serde_json::{Value as Json, json};
 
 use super::arguments::{Limits, Output, Places, Selection, Sharding};
 use super::progress::{self, Watcher, duration, out, rough};
+use super::scratch::Scratch;
 use super::signals::stop_flag;
 use super::studies::load_all;
 use super::{Ending, engine, events, json, run};
@@ -83,7 +84,7 @@ pub(super) fn planned(
     let options = run::options(selection, &run::How::default())?;
     // Only looked into: what is known already is not computed again.
     let known = places.cache.is_dir().then(|| Cache::open(&places.cache).ok()).flatten();
-    let elsewhere = tempfile::tempdir().map_err(|error| Ending::Usage(format!("no temporary folder: {error}")))?;
+    let elsewhere = Scratch::new()?;
     let cache = known.unwrap_or_else(|| Cache::open_if_possible(elsewhere.path()));
     let (plan, was_there) = shard::plan(study, &cache, &options, count, into).map_err(ending)?;
     let longest = plan.shards.iter().map(|shard| shard.seconds).fold(0.0, f64::max);
@@ -115,7 +116,7 @@ pub(super) fn planned(
 }
 
 fn one(folder: &Path, index: usize, limits: &Limits, jobs: Option<usize>, told: Told) -> Result<(), Ending> {
-    let scratch = tempfile::tempdir().map_err(|error| Ending::Usage(format!("no temporary folder: {error}")))?;
+    let scratch = Scratch::new()?;
     let silent = told != Told::Words;
     let bars = progress::bars(silent);
     let stop = stop_flag(bars.clone());

@@ -8,6 +8,7 @@ use serde_json::{Value as Json, json};
 
 use super::arguments::Limits;
 use super::progress::{self, Watcher, out};
+use super::scratch::Scratch;
 use super::signals::stop_flag;
 use super::{Ending, pages, run};
 use crate::program::PROGRAM;
@@ -28,7 +29,7 @@ pub(super) fn verify(
     quiet: bool,
 ) -> Result<(), Ending> {
     let mut archive = open(file).map_err(|error| Ending::Usage(error.to_string()))?;
-    let work = tempfile::tempdir().map_err(|error| Ending::Usage(format!("no temporary folder: {error}")))?;
+    let work = Scratch::new()?;
     let bars = progress::bars(quiet || as_json);
     let stop = stop_flag(bars.clone());
     // Names of stages are not known before the study is read; they are seldom longer.

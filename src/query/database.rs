@@ -7,6 +7,7 @@ use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::time::{Duration, Instant};
 
 use rusqlite::config::DbConfig;
 use rusqlite::functions::{Aggregate, Context, FunctionFlags};
@@ -29,6 +30,8 @@ const MOST_VALUES: usize = 20_000_000;
 const LONGEST_TEXT: i32 = 16 << 20;
 /// Bytes of what SQLite says; what is longer repeats the query.
 const LONGEST_SENTENCE: usize = 240;
+/// Steps of SQLite's machine after which the time is compared with the limit.
+const STEPS: i32 = 10_000;
 /// How the sentences of our own functions begin, among those of SQLite.
 const OURS: &str = "gearstudy: ";
 /// Characters of a text that is shown.
@@ -43,9 +46,19 @@ type Lacking<'a> = &'a dyn Fn(&str, &str) -> Option<String>;
 ///
 /// # Errors
 /// One sentence.
-pub(super) fn answer(query: &Parsed, tables: &[(&str, Table)], lacking: Lacking) -> Result<Answer, String> {
-    let failed = |error| failed(&error, tables, lacking);
-    let database = filled(tables).map_err(failed)?;
+pub(super) fn answer(
+    query: &Parsed,
+    tables: &[(&str, Table)],
+    lacking: Lacking,
+    limit: Duration,
+) -> Result<Answer, String> {
+    let failed = |error: Error| match error.sqlite_error_code() {
+        Some(ErrorCode::OperationInterrupted) => too_long(limit),
+        _ => failed(&error, tables, lacking),
+    };
+    let mut database = filled(tables).map_err(failed)?;
+    let began = Instant::now();
+    database.progress_handler(STEPS, Some(move || began.elapsed() > limit)).map_err(failed)?;
     let mut statement = database.prepare(&query.text).map_err(failed)?;
     let mut columns = Vec::new();
     for column in statement.columns() {
@@ -389,6 +402,14 @@ fn failed(error: &Error, tables: &[(&str, Table)], lacking: Lacking) -> String {
         return "the query cannot be answered: it has a part that is SQL, but not known here".to_owned();
     }
     format!("the query cannot be answered: {line}")
+}
+
+fn too_long(limit: Duration) -> String {
+    format!(
+        "the query takes more than {} s: join on more columns, choose fewer rows with WHERE, or give it longer with \
+         --timeout",
+        limit.as_secs()
+    )
 }
 
 fn too_large(what: &str) -> String {

@@ -8,6 +8,8 @@ mod kinds;
 mod names;
 pub mod tables;
 
+use std::time::Duration;
+
 use studygraph::table::data::Cell;
 use tables::Tables;
 
@@ -42,13 +44,13 @@ impl Column {
     }
 }
 
-/// Answers one query.
+/// Answers one query within a time, which begins when its tables have been read.
 ///
 /// # Errors
 /// One sentence: what is wrong with the text, a table or column that is not there, or what SQLite cannot do.
-pub fn ask(text: &str, tables: &mut Tables<'_>) -> Result<Answer, String> {
+pub fn ask(text: &str, tables: &mut Tables<'_>, limit: Duration) -> Result<Answer, String> {
     let query = names::parse(text)?;
     let found = query.tables.iter().map(|name| Ok((name.as_str(), tables.read(name)?)));
     let found = found.collect::<Result<Vec<_>, String>>()?;
-    database::answer(&query, &found, &|table, column| tables.lacking(table, column))
+    database::answer(&query, &found, &|table, column| tables.lacking(table, column), limit)
 }

@@ -58,6 +58,9 @@ pub struct Question {
     /// Write to this file, as its name ends: .csv, .json, .md or .parquet.
     #[arg(long, short, value_name = "FILE", conflicts_with = "format", requires = "sql")]
     pub output: Option<PathBuf>,
+    /// Seconds after which a query is given up; the time to read its tables does not count.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..))]
+    pub timeout: u32,
 }
 
 /// What to compare, and how far apart is the same.

@@ -122,3 +122,102 @@ fn memory_is_foreseen_from_above() {
         assert!((minimum..=1.0).contains(&share), "{stage}: {measured} of {expected} foreseen bytes");
     }
 }
+
+/// `ulimit -f`: a write beyond it is an error that names the file, and not the end by a signal.
+#[cfg(unix)]
+#[test]
+fn a_limit_on_the_size_of_files_is_reported() {
+    let desk = Desk::with("quick.yaml");
+    desk.run(&["run", "quick.yaml", "--quiet"], 0);
+    for words in [
+        "run quick.yaml --quiet --results new --cache none",
+        "archive quick.yaml -o a.zip",
+        "query 'SELECT * FROM quick.ste.curve' -o a.csv",
+        "report quick.yaml --results new",
+    ] {
+        let line = format!("ulimit -f 4; \"$0\" {words}");
+        let output = Command::new("sh")
+            .args(["-c", &line, env!("CARGO_BIN_EXE_gearstudy")])
+            .current_dir(desk.path(""))
+            .env_remove("GEARSTUDY_CACHE")
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code() == Some(1), "{words}: {}: {said}", output.status);
+        assert!(said.contains("too large") || words.starts_with("report"), "{words}: {said}");
+    }
+}
+
+#[test]
+fn a_query_has_a_time_limit() {
+    let desk = Desk::with("quick.yaml");
+    desk.run(&["run", "quick.yaml", "--quiet"], 0);
+    let endless =
+        "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT COUNT(*) FROM n, quick.ste.curve";
+    let began = std::time::Instant::now();
+    let (_, said) = desk.run(&["query", endless, "--timeout", "1"], 2);
+    assert!(said.contains("the query takes more than 1 s") && said.contains("--timeout"), "{said}");
+    assert!(began.elapsed() < std::time::Duration::from_secs(30));
+}
+
+/// What a study reads goes into results and archives, so nothing outside of its folder is read.
+#[cfg(unix)]
+#[test]
+fn a_link_beside_a_study_leads_nowhere_else() {
+    let desk = Desk::with("quick.yaml");
+    let trace = "roll_lengths [mm], deviations [um]\n4,-2\n8,0\n12,1\n16,-4\n";
+    fs::create_dir_all(desk.path("own/data")).unwrap();
+    fs::write(desk.path("outside.csv"), trace).unwrap();
+    fs::write(desk.path("own/data/inside.csv"), trace).unwrap();
+    let study = format!(
+        "study: linked\nstages:\n{PAIR}  designs: {{ kind: modification, pair: pair, designs: \
+         {{ made: [measured: {{ gear: pinion, file: trace.csv }}] }} }}\n"
+    );
+    fs::write(desk.path("own/linked.yaml"), study).unwrap();
+    let link = desk.path("own/trace.csv");
+    std::os::unix::fs::symlink("data/inside.csv", &link).unwrap();
+    desk.run(&["check", "own/linked.yaml"], 0);
+    for target in ["../outside.csv", "/etc/passwd", "/dev/zero"] {
+        fs::remove_file(&link).unwrap();
+        std::os::unix::fs::symlink(target, &link).unwrap();
+        for command in ["check", "run"] {
+            let (_, said) = desk.run(&[command, "own/linked.yaml"], 2);
+            assert!(said.contains("`trace.csv` is a link that leads out of the folder of the study"), "{said}");
+        }
+    }
+}
+
+/// A killed `verify` leaves its temporary folder; the next one takes it away, and not that of one that lives.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_a_killed_command_left_is_removed_by_the_next() {
+    let desk = Desk::with("quick.yaml");
+    desk.run(&["run", "quick.yaml", "--quiet"], 0);
+    desk.run(&["archive", "quick.yaml", "-o", "a.zip"], 0);
+    let temporary = tempfile::tempdir().unwrap();
+    let count = || fs::read_dir(temporary.path()).unwrap().count();
+    let mut kills = 0;
+    for _ in 0..4 {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_gearstudy"));
+        command.args(["verify", "a.zip", "--quiet"]).current_dir(desk.path("")).env("TMPDIR", temporary.path());
+        let mut child = command.spawn().unwrap();
+        while count() == 0 && child.try_wait().unwrap().is_none() {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        child.kill().unwrap();
+        kills += usize::from(child.wait().unwrap().code().is_none());
+        assert!(count() <= 1, "{}", count());
+    }
+    assert!(kills > 0);
+    let output = desk.command(&["verify", "a.zip", "--quiet"]).env("TMPDIR", temporary.path()).output().unwrap();
+    assert_eq!((output.status.code(), count()), (Some(0), 0));
+    // A file of a killed archive beside the new one.
+    let boot = fs::read_to_string("/proc/sys/kernel/random/boot_id").unwrap();
+    let space = boot + &fs::read_link("/proc/self/ns/pid").unwrap().display().to_string();
+    let mut ended = Command::new("true").spawn().unwrap();
+    ended.wait().unwrap();
+    let left = desk.path(&format!(".partial-{}-{}-0", &blake3::hash(space.as_bytes()).to_hex()[..8], ended.id()));
+    fs::write(&left, "half").unwrap();
+    desk.run(&["archive", "quick.yaml", "-o", "a.zip"], 0);
+    assert!(!left.exists());
+}

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
+use std::time::Duration;
 
 use serde_json::Value;
 use tempfile::TempDir;
@@ -91,7 +92,7 @@ impl Shop {
             None => Ok(Side::folder(self.path(), "the shop")),
             Some(revision) => Err(format!("there is no revision `{revision}`")),
         };
-        ask(query, &mut Tables::new(&open, &|_, _| None, Some("small"), None))
+        ask(query, &mut Tables::new(&open, &|_, _| None, Some("small"), None), Duration::from_mins(1))
     }
 
     /// The rows as text, cells with a space between, NULL as a dash.

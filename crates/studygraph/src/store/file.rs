@@ -6,6 +6,7 @@
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::error::StoreError;
@@ -94,13 +95,23 @@ fn begin(folder: &Path) -> io::Result<(File, PathBuf)> {
     std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o644);
     loop {
         let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-        let path = folder.join(format!("{TEMPORARY}{}-{number}", std::process::id()));
+        let path = folder.join(format!("{TEMPORARY}{}-{}-{number}", space(), std::process::id()));
         match options.open(&path) {
             // Left behind by a killed process of the same number, or one of another host's.
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             opened => return Ok((opened?, path)),
         }
     }
+}
+
+/// Names what numbers of processes mean something in: a start of a computer, in it a container. Empty where it is not known.
+fn space() -> &'static str {
+    static SPACE: OnceLock<String> = OnceLock::new();
+    SPACE.get_or_init(|| {
+        let boot = fs::read_to_string("/proc/sys/kernel/random/boot_id");
+        let (Ok(boot), Ok(container)) = (boot, fs::read_link("/proc/self/ns/pid")) else { return String::new() };
+        blake3::hash(format!("{boot}{}", container.display()).as_bytes()).to_hex()[..8].to_owned()
+    })
 }
 
 /// Bytes of a manifest; the largest known has less than one million.
@@ -140,6 +151,26 @@ pub fn sweep(folder: &Path) {
     }
 }
 
+/// The same in a folder that others may write to now: removes files of processes of this computer that have ended.
+pub fn sweep_ended(folder: &Path) {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let process = || {
+            let (space, rest) = name.to_str()?.strip_prefix(TEMPORARY)?.split_once('-')?;
+            let process: u32 = rest.split_once('-')?.0.parse().ok()?;
+            (!space.is_empty() && space == self::space()).then_some(process)
+        };
+        let is_gone = |process: u32| {
+            fs::metadata(format!("/proc/{process}")).is_err_and(|error| error.kind() == io::ErrorKind::NotFound)
+        };
+        if process().is_some_and(is_gone) {
+            // A leftover that cannot be removed does no harm.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -164,12 +195,30 @@ mod tests {
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
         // What another process of the same number left behind is passed over.
         for number in 0..1000 {
-            fs::write(folder.path().join(format!("{TEMPORARY}{}-{number}", std::process::id())), "left").unwrap();
+            let name = format!("{TEMPORARY}{}-{}-{number}", space(), std::process::id());
+            fs::write(folder.path().join(name), "left").unwrap();
         }
         write(&path, b"three", Durability::Lazy).unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"three");
         let missing = write(&folder.path().join("no/such"), b"", Durability::Lazy).unwrap_err().to_string();
         assert!(missing.contains("no"), "{missing}");
+    }
+
+    /// Those of a process that lives stay, and those of other computers, of which nothing is known.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn what_ended_processes_left_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut ended = std::process::Command::new("true").spawn().unwrap();
+        ended.wait().unwrap();
+        let (own, ended) = (std::process::id(), ended.id());
+        let names = [format!("{}-{own}-1", space()), format!("0badc0de-{ended}-1"), format!("{}-{ended}-1", space())];
+        for name in &names {
+            fs::write(folder.path().join(format!("{TEMPORARY}{name}")), "left").unwrap();
+        }
+        sweep_ended(folder.path());
+        let is_left = names.map(|name| folder.path().join(format!("{TEMPORARY}{name}")).exists());
+        assert_eq!(is_left, [true, true, false]);
     }
 
     /// Neither is opened: a pipe would be waited for, a device has no end.

@@ -4,6 +4,7 @@
 //! manifests, archives and shards store is the whole study, and by itself gives the same tables. `file: NAME.csv` in a stage is then
 //! what the file says (`columns.rs`). A message about it has the file for its place. Must not know: fields, what any is for.
 
+use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 use super::assemble::{FILES, SET};
@@ -115,6 +116,7 @@ pub(super) fn attach(root: &mut Node, added: &mut Added, set: &Node, path: &Path
     let mut attached = Vec::with_capacity(missing.len());
     for (name, place) in missing {
         let file = beside(path, &name).map_err(|found| refused(found.at(place)))?;
+        leads_below(path, &file, &name).map_err(|found| refused(found.at(place)))?;
         let read = read::beside(&file, &name, (&study, place, path))?;
         let read = read.trim_start_matches('\u{feff}').replace("\r\n", "\n").replace('\r', "\n");
         let read = read.trim_end().to_owned();
@@ -150,6 +152,18 @@ fn beside(study: &Path, name: &str) -> Result<PathBuf, Diagnostic> {
         return Err(Diagnostic::new(message).help("move it there, and write its path from the study on, with `/`"));
     }
     Ok(study.parent().unwrap_or(Path::new("")).join(name))
+}
+
+/// Whether a file lies below the folder of the study also where links lead: what is read goes into results and archives.
+fn leads_below(study: &Path, file: &Path, name: &str) -> Result<(), Diagnostic> {
+    let folder = study.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    // A file that is not there is reported when it is read.
+    let (Ok(folder), Ok(target)) = (fs::canonicalize(folder), fs::canonicalize(file)) else { return Ok(()) };
+    if target.starts_with(&folder) {
+        return Ok(());
+    }
+    let message = format!("{} is a link that leads out of the folder of the study", quote(name));
+    Err(Diagnostic::new(message).help("put a copy of the file there"))
 }
 
 /// The tree of a study with what its files say in the places where they are named; `text` is the whole of it.

@@ -64,6 +64,9 @@ pub(in crate::runner) fn of_study(
     stop: &AtomicBool,
 ) -> Result<Ran, ShardError> {
     let shard = plan.shard(index)?;
+    for folder in [folder, &folder.join("shards")] {
+        file::sweep_ended(folder);
+    }
     let cache = Cache::open_if_possible(&scratch.join("cache"));
     if plan.known {
         take(&known_file(folder), plan, None, &cache)?;

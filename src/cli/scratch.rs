@@ -1,0 +1,118 @@
+//! Temporary folders. A folder that a killed run left is removed by the next run that makes one.
+//!
+//! The kernel's lock on a folder says whether its run lives. Must not know: what they are for.
+
+use std::fs::{self, File, TryLockError};
+use std::io;
+use std::path::Path;
+
+use tempfile::{Builder, TempDir};
+
+use super::Ending;
+
+/// How their names begin.
+const PREFIX: &str = "gearstudy-";
+
+/// A temporary folder, removed when it is dropped.
+pub(super) struct Scratch {
+    folder: TempDir,
+    /// Released after the folder is gone.
+    _lock: Option<File>,
+}
+
+impl Scratch {
+    /// # Errors
+    /// When there is no place for one.
+    pub(super) fn new() -> Result<Self, Ending> {
+        let made = made(&std::env::temp_dir());
+        made.map_err(|error| Ending::Usage(format!("no temporary folder: {error}")))
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        self.folder.path()
+    }
+}
+
+fn made(root: &Path) -> io::Result<Scratch> {
+    loop {
+        let folder = Builder::new().prefix(PREFIX).tempdir_in(root)?;
+        let lock = match locked(folder.path()) {
+            Ok(lock) => Some(lock),
+            // Another run takes it for one that was left, as it is not locked yet.
+            Err(TryLockError::WouldBlock) => continue,
+            // Where there are no locks, nothing is known of other folders either.
+            Err(TryLockError::Error(_)) => return Ok(Scratch { folder, _lock: None }),
+        };
+        if fs::symlink_metadata(folder.path()).is_ok() {
+            sweep(root, folder.path());
+            return Ok(Scratch { folder, _lock: lock });
+        }
+    }
+}
+
+/// The kernel's lock on a folder.
+#[cfg(unix)]
+fn locked(folder: &Path) -> Result<File, TryLockError> {
+    let file = File::open(folder).map_err(TryLockError::Error)?;
+    file.try_lock().map(|()| file)
+}
+
+/// Elsewhere folders cannot be opened.
+#[cfg(not(unix))]
+fn locked(_folder: &Path) -> Result<File, TryLockError> {
+    Err(TryLockError::Error(io::ErrorKind::Unsupported.into()))
+}
+
+/// Removes the folders of runs that have ended; of this user, since anybody may write here.
+fn sweep(root: &Path, own: &Path) {
+    let Some(user) = owner(own) else { return };
+    for entry in fs::read_dir(root).into_iter().flatten().flatten() {
+        let path = entry.path();
+        let is_one = entry.file_name().to_string_lossy().starts_with(PREFIX) && path != own;
+        if is_one
+            && owner(&path) == Some(user)
+            && let Ok(_lock) = locked(&path)
+        {
+            // A folder that cannot be removed does no harm.
+            let _ = fs::remove_dir_all(&path);
+        }
+    }
+}
+
+/// Who owns a folder; nobody of what is none.
+#[cfg(unix)]
+fn owner(folder: &Path) -> Option<u32> {
+    let facts = fs::symlink_metadata(folder).ok().filter(fs::Metadata::is_dir)?;
+    Some(std::os::unix::fs::MetadataExt::uid(&facts))
+}
+
+#[cfg(not(unix))]
+fn owner(_folder: &Path) -> Option<u32> {
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn folders_of_killed_runs_are_removed_and_those_of_others_stay() {
+        let root = tempfile::tempdir().unwrap();
+        let living = made(root.path()).unwrap();
+        fs::create_dir_all(root.path().join("gearstudy-left/below")).unwrap();
+        fs::create_dir(root.path().join("other-left")).unwrap();
+        fs::write(root.path().join("gearstudy-file"), "").unwrap();
+        std::os::unix::fs::symlink("other-left", root.path().join("gearstudy-link")).unwrap();
+        let next = made(root.path()).unwrap();
+        let names = |folder: &Path| -> Vec<String> {
+            let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+            names.collect()
+        };
+        let all = names(root.path());
+        assert_eq!(all.len(), 5, "{all:?}");
+        assert!(!all.contains(&"gearstudy-left".to_owned()) && living.path().is_dir() && next.path().is_dir());
+        drop((living, next));
+        assert_eq!(names(root.path()).len(), 3);
+    }
+}
