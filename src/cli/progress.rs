@@ -15,6 +15,7 @@ use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
 use declare::text::visible;
 use studygraph::runner::events::{Event, Observer};
+use studygraph::study::Study;
 
 /// Watches one study.
 pub struct Watcher {
@@ -284,6 +285,13 @@ pub fn complain(text: &str) {
 /// What a lock says, which may be waited for.
 pub fn told(message: &str) {
     aside(None, &format!("gearstudy: {message}"));
+}
+
+/// What is valid in a study and hardly meant.
+pub fn warned(study: &Study) {
+    for warning in study.warnings() {
+        told(&format!("warning: {warning}"));
+    }
 }
 
 /// A text that no terminal takes for more than text: what would move the cursor, colour, hide or turn round is written as

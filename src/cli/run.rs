@@ -304,6 +304,7 @@ pub(super) fn plan(
     let mut all = Vec::new();
     for study in studies {
         let plan = plan_of(study, places, &options(selection, how)?)?;
+        progress::warned(study);
         if as_json {
             all.push(plan_json(study, &plan));
         } else {

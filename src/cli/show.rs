@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::arguments::{Changes, Format, Places};
-use super::progress::{out, told};
+use super::progress::{self, out, told};
 use super::{Ending, draw, json, print, studies};
 use crate::program::{examine, load_text};
 use crate::rexs;
@@ -112,6 +112,9 @@ pub(super) fn check(files: &[PathBuf], changes: &Changes, as_json: bool, quiet: 
         let checked = rehearsed(examine(file, &settings)).map_err(LoadError::in_full);
         if as_json {
             values.push(checked_value(file, &checked));
+        }
+        if let Ok(study) = &checked {
+            progress::warned(study);
         }
         match checked {
             Ok(study) if !quiet && !as_json => {

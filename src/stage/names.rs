@@ -103,6 +103,7 @@ tables! {
         RADIUS = "radius",
         LENGTH = "length",
         STRESS = "stress",
+        ERROR_ESTIMATE = "error_estimate",
     }
     summary of "ste": "summary" {
         DESIGN = "design",
@@ -114,6 +115,8 @@ tables! {
         ROOT_STRESS_POSITION_GEAR = "root_stress_position_gear",
         ROOT_STRESS_RADIUS_PINION = "root_stress_radius_pinion",
         ROOT_STRESS_RADIUS_GEAR = "root_stress_radius_gear",
+        ROOT_STRESS_ERROR_PINION = "root_stress_error_pinion",
+        ROOT_STRESS_ERROR_GEAR = "root_stress_error_gear",
         ISO6336_ROOT_STRESS_PINION = "iso6336_root_stress_pinion",
         ISO6336_ROOT_STRESS_GEAR = "iso6336_root_stress_gear",
     }

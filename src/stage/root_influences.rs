@@ -29,6 +29,8 @@ struct Row {
     radius: f64,
     length: f64,
     stress: f64,
+    /// Of the gear.
+    error_estimate: f64,
 }
 
 fn columns() -> Columns<Row> {
@@ -50,8 +52,14 @@ fn columns() -> Columns<Row> {
         .float(names::LENGTH, "mm", length, |row| row.length)
         .float(names::STRESS, "MPa mm/N", "Stress per load per face width, positive in tension.", |row| row.stress)
         .but(|column| column.tolerance(1e-9, 1e-9))
+        .float(names::ERROR_ESTIMATE, "%", ERROR_ESTIMATE, |row| row.error_estimate)
+        // The difference of two stresses.
+        .but(|column| column.tolerance(1e-7, 1e-9))
         .on_demand()
 }
+
+/// Description of the column of that name, here and elsewhere.
+pub const ERROR_ESTIMATE: &str = "Estimated error of the largest stress of the gear's roots, from a mesh half as fine.";
 
 /// That of the table that [`write()`] makes.
 #[must_use]
@@ -65,7 +73,7 @@ pub fn schema() -> Schema {
 /// When a stress is not finite.
 pub fn write(influences: &[RootInfluences; 2]) -> Result<Table, TableError> {
     let mut rows = Vec::new();
-    for (side, RootInfluences { radii, lengths, stresses, along }) in
+    for (side, RootInfluences { radii, lengths, stresses, along, error_estimate }) in
         [Side::Pinion, Side::Gear].into_iter().zip(influences)
     {
         let neighbours = (stresses.len() / 2).cast_signed();
@@ -84,6 +92,7 @@ pub fn write(influences: &[RootInfluences; 2]) -> Result<Table, TableError> {
                     radius,
                     length,
                     stress,
+                    error_estimate: *error_estimate,
                 }));
                 rows.extend((1..).zip(rolls).map(|(node, roll)| Row {
                     side,
@@ -94,6 +103,7 @@ pub fn write(influences: &[RootInfluences; 2]) -> Result<Table, TableError> {
                     radius,
                     length,
                     stress: series.value(roll),
+                    error_estimate: *error_estimate,
                 }));
             }
         }
@@ -111,6 +121,8 @@ pub fn port(stage: &str) -> Port {
         (summary::TABLE, summary::ROOT_STRESS_POSITION_GEAR),
         (summary::TABLE, summary::ROOT_STRESS_RADIUS_PINION),
         (summary::TABLE, summary::ROOT_STRESS_RADIUS_GEAR),
+        (summary::TABLE, summary::ROOT_STRESS_ERROR_PINION),
+        (summary::TABLE, summary::ROOT_STRESS_ERROR_GEAR),
         (curve::TABLE, curve::ROOT_STRESS_PINION),
         (curve::TABLE, curve::ROOT_STRESS_GEAR),
     ];
@@ -159,6 +171,7 @@ fn read(table: &Table, side: Side) -> Result<RootInfluences, Failure> {
         lengths: of_places(names::LENGTH),
         stresses: (0..teeth).map(|tooth| (0..places).map(|place| series(tooth, place)).collect()).collect(),
         along: (0..teeth).map(|tooth| (0..turned * places).map(|place| along(tooth, place)).collect()).collect(),
+        error_estimate: si(table, names::ERROR_ESTIMATE, rows[0]),
     })
 }
 
@@ -178,6 +191,7 @@ mod tests {
                 })
                 .collect(),
             along: (0..3).map(|tooth| (0..along).map(|place| scale * (tooth * 10 + place) as f64).collect()).collect(),
+            error_estimate: 1e-6 * scale,
         };
         let both = [of(5, 700.0, 5), of(7, 400.0, 0)];
         let table = write(&both).unwrap();
@@ -189,6 +203,7 @@ mod tests {
             };
             near(&back.radii, &known.radii);
             near(&back.lengths, &known.lengths);
+            near(&[back.error_estimate], &[known.error_estimate]);
             assert_eq!(back.along.len(), 3);
             back.along.iter().zip(&known.along).for_each(|(back, known)| near(back, known));
             assert_eq!(back.stresses.len(), 3);

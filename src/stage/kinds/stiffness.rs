@@ -96,6 +96,9 @@ pub enum Coupling {
 /// What finite elements take without a wanted accuracy: for either gear the mesh, and one half as fine for its error.
 const USUAL_FACTORISATIONS: f64 = 4.0;
 
+/// What the stresses at the roots take: for either gear a mesh that is graded to the fillet, and one half as fine.
+const MESHES_OF_ROOTS: usize = 4;
+
 /// The torque that stands for "any" where the contact is linear, so that stiffness does not depend on load.
 const ANY_TORQUE: f64 = 1.0;
 
@@ -217,7 +220,15 @@ fn root_stress() -> Columns<StressRow> {
         .float("roll_angle", "rad", "Roll angle of the loaded point.", |row| row.1.roll)
         .float("stress", "MPa mm/N", stress, |row| row.1.stress)
         .float("radius", "mm", "Radius at which it is.", |row| row.1.radius)
+        .float("error_estimate", "%", root_influences::ERROR_ESTIMATE, |row| row.1.error_estimate)
+        // The difference of two stresses.
+        .but(|column| column.tolerance(1e-7, 1e-9))
         .on_demand()
+}
+
+/// Whether a table is demanded that comes from the meshes of the roots.
+fn wants_roots(demand: &Demand) -> bool {
+    demand.table(ROOT_STRESS) || demand.table(names::root_influences::TABLE)
 }
 
 fn stress_rows(stresses: Vec<RootStress>) -> Vec<StressRow> {
@@ -301,9 +312,8 @@ impl Stage for Stiffness {
             };
             estimate = estimate.rows(demand, schema, rows);
         }
-        if demand.table(ROOT_STRESS) {
-            let meshes = if self.deflection.accuracy.is_some() { 6 } else { 2 };
-            estimate = estimate.work(&Work::of(&MESH_FACTORISATIONS, meshes), foreseen.times);
+        if meshed && wants_roots(demand) {
+            estimate = estimate.work(&Work::of(&MESH_FACTORISATIONS, MESHES_OF_ROOTS), foreseen.times);
         }
         estimate
     }
@@ -328,14 +338,14 @@ impl Stage for Stiffness {
     }
 
     fn saved(&self, _demand: &Demand, table: &str, _column: Option<&str>) -> Option<Saved> {
-        (table == ROOT_STRESS).then_some(Saved::Fixed(&MESH_FACTORISATIONS, 2.0))
+        (table == ROOT_STRESS).then_some(Saved::Fixed(&MESH_FACTORISATIONS, MESHES_OF_ROOTS as f64))
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::of(inputs)?;
         let began = Instant::now();
         let (method, assumptions) = (&self.deflection.teeth.method, self.assumptions());
-        let roots = method.root_stresses().filter(|_| context.demand.table(names::root_influences::TABLE));
+        let roots = method.root_stresses().filter(|_| wants_roots(context.demand));
         let tabulated = match roots {
             Some(method) => method.tabulate_with_roots(&pair, assumptions).map(|(all, roots)| (all, Some(roots))),
             None => method.tabulate(&pair, assumptions).map(|all| (all, None)),
@@ -379,15 +389,15 @@ impl Stage for Stiffness {
             let found = iso6336::stiffness(&iso6336::Inputs::of(&pair, &method));
             tables.push(iso().table(&[found]).map_err(failed)?);
         }
-        if let Some(method) = self.deflection.teeth.method.root_stresses().filter(|_| context.demand.table(ROOT_STRESS))
-        {
-            let (found, work) =
-                method.root_stress(&pair, self.assumptions()).map_err(|error| Failure::new(error.to_string()))?;
-            context.work.add(&work);
-            tables.push(root_stress().table(&stress_rows(found)).map_err(failed)?);
-        }
         if let Some(roots) = roots {
-            tables.push(root_influences::write(&roots).map_err(failed)?);
+            if context.demand.table(ROOT_STRESS) {
+                let sides = [Side::Pinion, Side::Gear].into_iter().zip(&roots);
+                let found = sides.flat_map(|(side, influences)| influences.largest(side)).collect();
+                tables.push(root_stress().table(&stress_rows(found)).map_err(failed)?);
+            }
+            if context.demand.table(names::root_influences::TABLE) {
+                tables.push(root_influences::write(&roots).map_err(failed)?);
+            }
         }
         Ok(tables)
     }

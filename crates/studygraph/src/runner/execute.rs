@@ -76,6 +76,9 @@ pub fn run(
         let manifest = outcome.take_manifest(study);
         publishing(study, outcome, options, around, |facts, source| folder.publish(manifest, facts, source))
     };
+    for message in &study.warnings().collect::<Vec<_>>() {
+        observer.event(&Event::Warning { message });
+    }
     let mut outcome = execute(study, cache, options, observer, stop)?;
     let mut published = publish(&mut outcome);
     if let Err(StoreError::Damaged { .. }) = published {

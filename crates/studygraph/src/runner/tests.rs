@@ -309,6 +309,7 @@ impl Bench {
             nodes: specs.iter().map(node).collect(),
             values: 0,
             unread: Vec::new(),
+            notes: Vec::new(),
             program: self.program,
         }
     }

@@ -88,7 +88,8 @@ pub fn part(
     }
     let mut wrong = Vec::new();
     let study = sound_tree(Some(root), blocks.text(), path, program, &mut wrong).ok()??;
-    wrong.is_empty().then_some(Study { unread, ..study })
+    // Whether an interval has an effect is known of a whole study alone.
+    (wrong.is_empty() && study.notes.is_empty()).then_some(Study { unread, ..study })
 }
 
 fn sound_tree(
@@ -124,6 +125,7 @@ fn sound_tree(
     let drafts = drafts(stages, program, &belong, &mut blame)?;
     blame.is_misnamed = drafts.iter().any(|draft| draft.is_misnamed);
     links::check_references(&drafts, &mut blame);
+    let notes = intervals::without_effect(&drafts).into_iter().collect();
     let mut built = Vec::with_capacity(drafts.len());
     for (index, Draft { name, place, kind, record, .. }) in drafts.into_iter().enumerate() {
         let stage = kind.zip(record).map(|(kind, record)| ((kind.build)(&record), kind, record));
@@ -159,6 +161,7 @@ fn sound_tree(
         nodes,
         unread: Vec::new(),
         values,
+        notes,
         program,
     }))
 }
@@ -249,6 +252,7 @@ pub fn draft(
         kind: None,
         record: None,
         references: Vec::new(),
+        intervals: Vec::new(),
     };
     if let Err(found) = check_name("stage", &draft.name, draft.place) {
         draft.is_misnamed = true;
@@ -263,6 +267,7 @@ pub fn draft(
             draft.kind = Some(kind);
             draft.record = record.map_err(blame).ok().map(|record| intervals::with_intervals(record, kind, stages));
             draft.references = decoder.references;
+            draft.intervals = decoder.intervals;
         }
     }
     draft

@@ -8,13 +8,14 @@ use std::collections::BTreeSet;
 
 use super::decode::Decoder;
 use super::document::{Content, Node};
+use super::links::Draft;
 use super::overrides::Stages;
-use super::quantity::interval::{Interval, halves};
+use super::quantity::interval::{Interval, halves, middle};
 use super::varied::mark;
 use super::words::quote;
 use crate::stage::Kind;
-use declare::error::Diagnostic;
-use declare::record::varied::{INTERVALS, Stage, Varied};
+use declare::error::{Diagnostic, Place};
+use declare::record::varied::{INTERVALS, Slot, Stage, Varied};
 use declare::record::{PlacedValue, Record, Value};
 
 /// A stage that is named, or read by one that is.
@@ -52,6 +53,44 @@ pub fn with_intervals(mut record: Record, kind: &'static Kind, stages: Stages) -
         record.fields.push((INTERVALS, PlacedValue { value: Value::Varied(varied), place }));
     }
     record
+}
+
+/// That the widths of some intervals change no result: those of stages that no stage is set against. None where there are none.
+/// An interval of several stages, by an alias, has an effect if it has one in any of them.
+pub fn without_effect(drafts: &[Draft]) -> Option<Diagnostic> {
+    let records = drafts.iter().filter_map(|draft| draft.record.as_ref());
+    let used: Vec<Place> =
+        records.filter_map(Varied::intervals).flat_map(|varied| &varied.axes).map(|axis| axis.values_place).collect();
+    let mut idle: Vec<(&Draft, &Interval)> = Vec::new();
+    for (draft, interval) in
+        drafts.iter().flat_map(|draft| draft.intervals.iter().map(move |interval| (draft, interval)))
+    {
+        if !used.contains(&interval.place) && idle.iter().all(|(_, other)| other.place != interval.place) {
+            idle.push((draft, interval));
+        }
+    }
+    let (first, others) = idle.split_first()?;
+    let (draft, interval) = first;
+    let slot = draft.record.as_ref().and_then(|record| Some(Slot::of_place(record, interval.place)?.path(record)));
+    let field = format!("{}{}", draft.name, slot.unwrap_or_default());
+    let (of_middle, half) = (middle(&interval.text)?, halves(&interval.text)?.1);
+    let more = match others {
+        [] => String::new(),
+        others => {
+            let lines: Vec<String> = others.iter().map(|(_, other)| other.place.line.to_string()).collect();
+            format!("; the same is true of the intervals in lines {}", lines.join(", "))
+        }
+    };
+    let message = format!(
+        "{} is {}: an interval is an input that was printed rounded, not a tolerance. It is computed with {}, and no report sets \
+         anything against it, so that {} changes no result{more}",
+        quote(&field),
+        quote(&interval.text),
+        quote(&of_middle),
+        quote(&format!("± {half}"))
+    );
+    let help = format!("a tolerance is stated in a stage of kind `scatter`: `{{ field: {field}, within: ± {half} }}`");
+    Some(Diagnostic::new(message).at(interval.place).help(help))
 }
 
 /// Whether a tree has a text that looks like an interval; most studies have none, and nothing of theirs is read twice.

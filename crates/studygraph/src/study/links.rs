@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::Node;
 use super::blame::{Blame, Built};
 use super::decode::Reference;
+use super::quantity::interval::Interval;
 use super::words::{alternatives, article, quote, stage_of};
 use crate::stage::{Kind, Port, Want};
 use crate::table::schema::Schema;
@@ -28,6 +29,8 @@ pub struct Draft {
     pub kind: Option<&'static Kind>,
     pub record: Option<Record>,
     pub references: Vec<Reference>,
+    /// Its numbers that are written as intervals.
+    pub intervals: Vec<Interval>,
 }
 
 /// Checks the fields that name a stage: that there is one, of a kind that fits, and no circle of them.

@@ -81,6 +81,8 @@ pub struct Study {
     pub values: usize,
     /// Stages of the file that were not read, since nothing is to be done with them; in the order of the file.
     pub unread: Vec<Unread>,
+    /// What is valid and hardly meant: for the user, no part of any result.
+    pub notes: Vec<Diagnostic>,
     /// Whose kinds of stages they are.
     pub program: &'static Program,
 }
@@ -122,6 +124,15 @@ pub struct LoadError {
 }
 
 impl Study {
+    /// Its notes as sentences, with file, line and column.
+    pub fn warnings(&self) -> impl Iterator<Item = String> {
+        self.notes.iter().map(|note| {
+            let place = note.place.map(|place| format!(":{}:{}", place.line, place.column)).unwrap_or_default();
+            let help = note.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
+            format!("{}{place}: {}{help}", self.path.display(), note.message)
+        })
+    }
+
     /// All its stages in the order of the file: those that were read by their places among the nodes, the others by name.
     pub fn stages(&self) -> impl Iterator<Item = Result<usize, &Unread>> {
         let mut unread = self.unread.iter().peekable();

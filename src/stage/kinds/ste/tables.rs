@@ -94,6 +94,7 @@ struct OfGear {
     stress: &'static str,
     position: &'static str,
     radius: &'static str,
+    error: &'static str,
     iso6336: &'static str,
 }
 
@@ -103,6 +104,7 @@ const GEARS: [OfGear; 2] = [
         stress: names::summary::LARGEST_ROOT_STRESS_PINION,
         position: names::summary::ROOT_STRESS_POSITION_PINION,
         radius: names::summary::ROOT_STRESS_RADIUS_PINION,
+        error: names::summary::ROOT_STRESS_ERROR_PINION,
         iso6336: names::summary::ISO6336_ROOT_STRESS_PINION,
     },
     OfGear {
@@ -110,6 +112,7 @@ const GEARS: [OfGear; 2] = [
         stress: names::summary::LARGEST_ROOT_STRESS_GEAR,
         position: names::summary::ROOT_STRESS_POSITION_GEAR,
         radius: names::summary::ROOT_STRESS_RADIUS_GEAR,
+        error: names::summary::ROOT_STRESS_ERROR_GEAR,
         iso6336: names::summary::ISO6336_ROOT_STRESS_GEAR,
     },
 ];
@@ -121,6 +124,7 @@ fn of_root(columns: Columns<Keyed<'_>>, gear: OfGear) -> Columns<Keyed<'_>> {
     let stress = format!("Largest tensile stress at the roots of the {name}'s teeth in the mesh cycle.");
     let position = format!("Distance from where a pair starts contact, where the {name}'s root stress is largest.");
     let radius = format!("Radius of the place on the {name}'s root; NaN without load.");
+    let error = format!("Estimated error of the {name}'s root stresses by its mesh.");
     let iso = format!("Nominal root stress σ_F0 of the {name} by ISO 6336-3, method B; NaN outside its ranges.");
     columns
         .float(gear.stress, "MPa", &stress, move |row| found(row).map_or(f64::NAN, |root| root.extremum.value))
@@ -129,6 +133,9 @@ fn of_root(columns: Columns<Keyed<'_>>, gear: OfGear) -> Columns<Keyed<'_>> {
         .but(|column| column.on_demand().tolerance(1e-6, 1e-9))
         .float(gear.radius, "mm", &radius, move |row| found(row).map_or(f64::NAN, |root| root.radius))
         .but(|column| column.on_demand().allows_nan().tolerance(1e-6, 1e-9))
+        .float(gear.error, "%", &error, move |row| found(row).map_or(f64::NAN, |root| root.error_estimate))
+        // The difference of two stresses.
+        .but(|column| column.on_demand().tolerance(1e-7, 1e-9))
         .float(gear.iso6336, "MPa", &iso, move |row| row.2.iso6336[at])
         .but(|column| column.on_demand().allows_nan())
 }

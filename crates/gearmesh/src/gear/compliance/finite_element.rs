@@ -7,6 +7,7 @@
 //! nothing is counted twice. Must not know: how it is solved.
 
 mod inclined;
+mod roots;
 mod solution;
 #[cfg(test)]
 mod tests;
@@ -17,13 +18,13 @@ use self::inclined::AtTip;
 use self::solution::{LEFT, Solution};
 use super::inclined::Inclined;
 use super::{
-    Assumptions, ComplianceError, ContactLaw, Foreseen, MeshFacts, Method, PairCompliance, RootInfluences, RootStress,
+    Assumptions, ComplianceError, ContactLaw, Foreseen, MeshFacts, Method, PairCompliance, RootInfluences,
     RootStresses, Tabulated, ToothCompliance, neighbours, of_both,
 };
 use crate::gear::contact::wedge;
+use crate::gear::finite_elements::MeshError;
 use crate::gear::finite_elements::gear_model::{FlankLoad, GearModel, Influences};
 use crate::gear::finite_elements::mesh::Sizing;
-use crate::gear::finite_elements::{MeshError, root_stress};
 use crate::gear::geometry::root::Root;
 use crate::gear::geometry::{Gear, GearPair, Side};
 use crate::gear::material::Plane;
@@ -88,7 +89,18 @@ impl Method for FiniteElement {
     }
 
     fn tabulate(&self, pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
-        Ok(self.tabulated(pair, assumptions, |_, _| Ok(()))?.0)
+        let mut work = Work::NONE;
+        let side = |side| {
+            let task = Task::new(self, pair, side, assumptions)?;
+            let (solution, facts) = task.solve(&mut work)?;
+            Ok::<_, ComplianceError>((task.tables(&solution)?, facts))
+        };
+        let [(pinion, of_pinion), (gear, of_gear)] = of_both(pair, side)?;
+        let meshes = vec![of_pinion, MeshFacts { side: Side::Gear, ..of_gear }];
+        let Assumptions { contact, coupled, .. } = assumptions;
+        let error_estimate = meshes.iter().map(|mesh| mesh.error_estimate).fold(0.0, f64::max);
+        let compliance = PairCompliance { pinion, gear, contact: Some(contact), plane: self.plane, coupled };
+        Ok(Tabulated { compliance, warnings: Vec::new(), error_estimate, meshes, work })
     }
 
     fn foresee(&self, assumptions: Assumptions) -> Foreseen {
@@ -111,35 +123,11 @@ impl Method for FiniteElement {
     }
 }
 
-impl FiniteElement {
-    /// The tables, and what else is wanted of each gear's mesh.
-    fn tabulated<T: Clone>(
-        &self,
-        pair: &GearPair,
-        assumptions: Assumptions,
-        also: impl Fn(&Task, &GearModel) -> Result<T, MeshError>,
-    ) -> Result<(Tabulated, [T; 2]), ComplianceError> {
-        let mut work = Work::NONE;
-        let side = |side| {
-            let task = Task::new(self, pair, side, assumptions)?;
-            let (solution, facts, model) = task.solve(&mut work)?;
-            let also = also(&task, &model).map_err(|error| task.failed(facts.elements_across, error))?;
-            Ok::<_, ComplianceError>((task.tables(&solution)?, facts, also))
-        };
-        let [(pinion, of_pinion, pinion_too), (gear, of_gear, gear_too)] = of_both(pair, side)?;
-        let meshes = vec![of_pinion, MeshFacts { side: Side::Gear, ..of_gear }];
-        let Assumptions { contact, coupled, .. } = assumptions;
-        let error_estimate = meshes.iter().map(|mesh| mesh.error_estimate).fold(0.0, f64::max);
-        let compliance = PairCompliance { pinion, gear, contact: Some(contact), plane: self.plane, coupled };
-        Ok((Tabulated { compliance, warnings: Vec::new(), error_estimate, meshes, work }, [pinion_too, gear_too]))
-    }
-}
-
 impl RootStresses for FiniteElement {
     fn foresee_influences(&self, assumptions: Assumptions) -> usize {
-        // About one place for each element across; three neighbours to either side, where contact ratios are 1 to 2.
+        // About three places for each element across; three neighbours to either side, where contact ratios are 1 to 2.
         let teeth = if assumptions.coupled { 7 } else { 1 };
-        2 * loads(assumptions.contact) * teeth * self.elements_across as usize
+        2 * loads(assumptions.contact) * teeth * 3 * self.elements_across as usize
     }
 
     fn tabulate_with_roots(
@@ -147,32 +135,16 @@ impl RootStresses for FiniteElement {
         pair: &GearPair,
         assumptions: Assumptions,
     ) -> Result<(Tabulated, [RootInfluences; 2]), ComplianceError> {
-        self.tabulated(pair, assumptions, root_influences)
-    }
-
-    fn root_stress(
-        &self,
-        pair: &GearPair,
-        assumptions: Assumptions,
-    ) -> Result<(Vec<RootStress>, Work), ComplianceError> {
-        let mut work = Work::NONE;
+        let mut tabulated = self.tabulate(pair, assumptions)?;
+        let (mut work, meshes) = (Work::NONE, &tabulated.meshes);
         let side = |side| {
+            let across = meshes.iter().find(|mesh| mesh.side == side).map(|mesh| mesh.elements_across);
             let task = Task::new(self, pair, side, assumptions)?;
-            let across = if task.accuracy.is_some() { task.solve(&mut work)?.1.elements_across } else { task.across };
-            let module = task.gear.specification.module;
-            let found = task
-                .model(across, &mut work)?
-                .root_stresses(&task.rolls)
-                .map_err(|error| task.failed(across, error))?;
-            let row = |(&roll, points): (&f64, &Vec<_>)| {
-                let (stress, radius) = root_stress::largest(points)?;
-                Some(RootStress { side, roll, stress: stress / module, radius: radius * module })
-            };
-            Ok::<_, ComplianceError>(task.rolls.iter().zip(&found).filter_map(row).collect::<Vec<_>>())
+            roots::influences(&task, across.unwrap_or(task.across), &mut work)
         };
-        let [mut rows, of_gear] = of_both(pair, side)?;
-        rows.extend(of_gear.into_iter().map(|row| RootStress { side: Side::Gear, ..row }));
-        Ok((rows, work))
+        let influences = of_both(pair, side)?;
+        tabulated.work.add(&work);
+        Ok((tabulated, influences))
     }
 }
 
@@ -241,20 +213,15 @@ impl<'a> Task<'a> {
         } else {
             Sizing::even(across)
         };
+        self.factorised(across, &sizing, work)
+    }
+
+    fn factorised(&self, across: usize, sizing: &Sizing, work: &mut Work) -> Result<GearModel<'_>, ComplianceError> {
         work.add(&Work::of(&MESH_FACTORISATIONS, 1));
-        GearModel::new(self.gear, &self.root, self.plane, &sizing).map_err(|error| self.failed(across, error))
+        GearModel::new(self.gear, &self.root, self.plane, sizing).map_err(|error| self.failed(across, error))
     }
 
-    fn model(&self, across: usize, work: &mut Work) -> Result<GearModel<'_>, ComplianceError> {
-        self.model_of(across, HALVED, work)
-    }
-
-    fn at(
-        &self,
-        across: usize,
-        parts: usize,
-        work: &mut Work,
-    ) -> Result<(Solution, MeshFacts, GearModel<'_>), ComplianceError> {
+    fn at(&self, across: usize, parts: usize, work: &mut Work) -> Result<(Solution, MeshFacts), ComplianceError> {
         let model = self.model_of(across, parts, work)?;
         work.add(&Work::of(&COMPLIANCE_EVALUATIONS, self.rolls.len()));
         let failed = |error| self.failed(across, error);
@@ -271,17 +238,17 @@ impl<'a> Task<'a> {
             unknowns: model.sector.unknowns(),
             error_estimate: model.rounding() + other_block,
         };
-        Ok((found, facts, model))
+        Ok((found, facts))
     }
 
     /// The influences, refined if an accuracy is asked for. The error is estimated from a mesh half as fine; where contact
     /// is resolved that is one of which each element is cut into four, and the influences are those that both tend to.
-    fn solve(&self, work: &mut Work) -> Result<(Solution, MeshFacts, GearModel<'_>), ComplianceError> {
+    fn solve(&self, work: &mut Work) -> Result<(Solution, MeshFacts), ComplianceError> {
         let mut across = self.across;
         loop {
             let nested = self.resolved && across >= HALVED * LEAST;
             let coarse = if nested { across / HALVED } else { even(across / 2).max(LEAST) };
-            let (mut found, mut facts, model) = self.at(across, HALVED, work)?;
+            let (mut found, mut facts) = self.at(across, HALVED, work)?;
             let (half, ..) = self.at(coarse, 1, work)?;
             let change = found.difference(&half);
             if nested {
@@ -290,9 +257,9 @@ impl<'a> Task<'a> {
             } else {
                 facts.error_estimate += change / (libm::pow(across as f64 / coarse as f64, ORDER) - 1.0);
             }
-            let Some(accuracy) = self.accuracy else { return Ok((found, facts, model)) };
+            let Some(accuracy) = self.accuracy else { return Ok((found, facts)) };
             if facts.error_estimate <= accuracy || across >= MOST_ELEMENTS {
-                return Ok((found, facts, model));
+                return Ok((found, facts));
             }
             let factor = libm::cbrt(facts.error_estimate / accuracy).clamp(1.0, 2.0);
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below 2 MOST_ELEMENTS
@@ -408,37 +375,6 @@ impl<'a> Task<'a> {
             neighbours,
         })
     }
-}
-
-/// Of loads at the nodes of the tables, on the tooth and on as many to either side as the tables know, and of one along the
-/// flank at the last of them where contact is resolved; SI.
-fn root_influences(task: &Task, model: &GearModel) -> Result<RootInfluences, MeshError> {
-    let mut loads: Vec<FlankLoad> = task.rolls.iter().map(|&roll| FlankLoad::normal(roll)).collect();
-    let normal = loads.len();
-    if task.resolved {
-        loads.push(inclined::loads(task.rolls[normal - 1])[0]);
-    }
-    let found = model.stress_influences_of(&loads, task.neighbours)?;
-    let module = task.gear.specification.module;
-    let (lower, upper) = (task.root.form_roll, task.gear.flank_end.roll);
-    let series = |loads: &Vec<Vec<f64>>, place: usize| {
-        let values: Vec<f64> = loads[..normal].iter().map(|stresses| stresses[place] / module).collect();
-        Series::from_values(lower, upper, &values)
-    };
-    let along = |loads: &Vec<Vec<f64>>| {
-        loads[normal..]
-            .iter()
-            .flat_map(|turned| inclined::along(turned, &loads[normal - 1]))
-            .map(|stress| stress / module)
-            .collect()
-    };
-    let count = found.gauges.len();
-    Ok(RootInfluences {
-        radii: found.gauges.iter().map(|gauge| module * libm::hypot(gauge.place[0], gauge.place[1])).collect(),
-        lengths: found.gauges.iter().map(|gauge| module * gauge.length).collect(),
-        stresses: found.stresses.iter().map(|loads| (0..count).map(|place| series(loads, place)).collect()).collect(),
-        along: found.stresses.iter().map(along).collect(),
-    })
 }
 
 /// The next even number.

@@ -24,8 +24,9 @@ use super::geometry::root::RootShape;
 use super::geometry::{GearPair, Side};
 use crate::gear::material::Plane;
 use crate::gear::work::COMPLIANCE_EVALUATIONS;
-use crate::numeric::chebyshev::Series;
+use crate::numeric::chebyshev::{Series, nodes};
 use crate::numeric::complementarity::MOST_SPRINGS;
+use crate::numeric::parabola::peak;
 use crate::numeric::surface::Surface;
 use declare::declared::Registrable;
 use declare::work::Work;
@@ -83,21 +84,10 @@ pub trait Method: Any + Debug + Registrable + Send + Sync {
 
 /// A method that knows the largest stress at the root of both gears' teeth.
 pub trait RootStresses {
-    /// For loads along the flank, and what it took.
-    ///
-    /// # Errors
-    /// When the method does not hold for this pair.
-    fn root_stress(
-        &self,
-        pair: &GearPair,
-        assumptions: Assumptions,
-    ) -> Result<(Vec<RootStress>, Work), ComplianceError>;
-
     /// About how many influences [`Self::tabulate_with_roots`] gives, of pinion and gear together.
     fn foresee_influences(&self, assumptions: Assumptions) -> usize;
 
-    /// What [`Method::tabulate`] gives, and the influences of loads on the roots of pinion and gear from the same meshes,
-    /// factorised once for both.
+    /// What [`Method::tabulate`] gives, and the influences of loads on the roots of pinion and gear, from meshes of their own.
     ///
     /// # Errors
     /// When the method does not hold for this pair.
@@ -122,6 +112,25 @@ pub struct RootInfluences {
     /// The same under a load along the flank, towards the root, at the tip: what inclined loads at its corner have of it. By
     /// the loaded tooth, then by place; no places where contact is not resolved.
     pub along: Vec<Vec<f64>>,
+    /// Estimated error of the largest stress under any load, relative to it.
+    pub error_estimate: f64,
+}
+
+impl RootInfluences {
+    /// The largest stress of a tooth under loads of its own, at the nodes of the tables; of the gear that has these roots.
+    #[must_use]
+    pub fn largest(&self, side: Side) -> Vec<RootStress> {
+        let own = &self.stresses[self.stresses.len() / 2];
+        let Some(first) = own.first() else { return Vec::new() };
+        let of_places: Vec<Vec<f64>> = own.iter().map(Series::node_values).collect();
+        let rolls = nodes(first.lower(), first.upper(), first.coefficients().len());
+        let row = |(node, roll): (usize, f64)| {
+            let stresses: Vec<f64> = of_places.iter().map(|values| values[node]).collect();
+            let (stress, radius) = peak(&self.lengths, &self.radii, &stresses)?;
+            Some(RootStress { side, roll, stress, radius, error_estimate: self.error_estimate })
+        };
+        rolls.into_iter().enumerate().filter_map(row).collect()
+    }
 }
 
 /// What a method takes, before it runs.
@@ -207,7 +216,7 @@ pub struct MeshFacts {
     pub error_estimate: f64,
 }
 
-/// The largest first principal stress on the surface of a loaded tooth's root.
+/// The largest tension along the surface of a loaded tooth's root.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RootStress {
     /// The gear whose tooth is loaded.
@@ -218,6 +227,8 @@ pub struct RootStress {
     pub stress: f64,
     /// Radius of the place \[m\].
     pub radius: f64,
+    /// Estimated relative error of the stresses of this gear.
+    pub error_estimate: f64,
 }
 
 /// Relative error of what is integrated and interpolated to rounding, as values of another program with 40 digits bound it.

@@ -5,11 +5,13 @@
 //! root below the cut, to the bore. Everything is symmetric about the tooth's centreline, on which nodes lie.
 //! Must not know: elasticity, loads.
 
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 use super::MeshError;
 use super::element::{self, NODES, RULE};
-use super::outline::{Outline, divide};
+use super::grading::{self, depths};
+use super::outline::{Division, Outline, Stretch, grade};
 use super::tooth_rows::{ToothRows, chain};
 
 /// Sizes for one element across; they are inversely proportional to the number of elements across.
@@ -21,14 +23,18 @@ const TURN: f64 = 3.2;
 const RIM: [f64; 2] = [0.7, 3.0];
 /// The same where loads are points: elements across are thinner there, and those below must not be what limits.
 const FINE_RIM: [f64; 2] = [0.45, 3.5];
-/// Depth of the body's elements over the radius, near a small bore.
-const PROPORTION: f64 = 3.2;
 
 /// Turn of the involute along one element where loads are points \[rad\]: next to the base circle its curvature has no bound.
 const INVOLUTE_TURN: f64 = 0.8;
 /// By which share elements at the flanks are thinner than if all across were alike, where loads are points: what such a load
 /// leaves varies most there. Those in the middle are thicker by as much.
 const CROWDED: f64 = 0.6;
+/// The same of the root curve where its stress is to be known: a quarter of a turn of fillet has 8 to 16 elements.
+const FILLET_TURN: f64 = 1.6;
+/// By how much elements grow for each length of the way from the sharpest place of the root.
+const FILLET_GROWTH: f64 = 0.9;
+/// The least length of elements there \[modules\], before they are cut into parts.
+const LEAST_SIZE: f64 = 5e-4;
 /// Length of an element along the flank at the tip over what it would be, where its corner matters.
 const AT_TIP: f64 = 1.0 / 16.0;
 /// By how much elements grow for each length of the way from there, for one element across.
@@ -38,7 +44,7 @@ const FROM_TIP: f64 = 0.9;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sizing {
     /// From the right flank (0) to the left (1), corners and middles alternating; symmetric, with ½ at a corner if the
-    /// centreline is to be an edge of elements.
+    /// centreline is to be an edge of elements. Not used with `fillet`, which decides it.
     pub across: Vec<f64>,
     /// Elements across if they were all alike; all other sizes follow from it.
     pub level: f64,
@@ -48,6 +54,8 @@ pub struct Sizing {
     pub involute_turn: f64,
     /// Where on the flank the mesh must be finer.
     pub focus: Option<Focus>,
+    /// Whether elements at the root are in proportion to its radius of curvature.
+    pub fillet: Option<Fillet>,
     /// Into how many parts each element along the outline, and down the body, is cut: so that meshes are nested.
     pub parts: usize,
 }
@@ -63,12 +71,21 @@ pub struct Focus {
     pub growth: f64,
 }
 
+/// Elements at the root that are in proportion to the radius of curvature of its curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fillet {
+    /// Turn of the root curve along one element, for one element across \[rad\].
+    pub turn: f64,
+    /// By how much elements grow for each length of the way from the smallest, along the surface and into the depth.
+    pub growth: f64,
+}
+
 impl Sizing {
     /// `across` equal elements between the flanks, an even number.
     #[must_use]
     pub fn even(across: usize) -> Self {
         let half = (0..=2 * across).map(|k| k as f64 / (2 * across) as f64).collect();
-        Self { across: half, level: across as f64, rim: RIM, involute_turn: TURN, focus: None, parts: 1 }
+        Self { across: half, level: across as f64, rim: RIM, involute_turn: TURN, focus: None, fillet: None, parts: 1 }
     }
 
     /// For point loads less their own fields, up to the end of a flank where half the tooth is `half` thick, at a `height`
@@ -88,6 +105,23 @@ impl Sizing {
             rim: FINE_RIM,
             involute_turn: INVOLUTE_TURN,
             focus: Some(Focus { height, size, growth: FROM_TIP }),
+            fillet: None,
+            parts,
+        }
+    }
+
+    /// For the stress at the root: elements are in proportion to the radius of the root curve where that is smallest, in
+    /// both directions, and grow with the distance from it; `across` elements between the flanks would there be without it.
+    /// `parts` are those of [`Self::nested`].
+    #[must_use]
+    pub fn graded(across: usize, parts: usize) -> Self {
+        Self {
+            across: Vec::new(),
+            level: across as f64 / parts as f64,
+            rim: FINE_RIM,
+            involute_turn: INVOLUTE_TURN,
+            focus: None,
+            fillet: Some(Fillet { turn: FILLET_TURN, growth: FILLET_GROWTH }),
             parts,
         }
     }
@@ -169,22 +203,38 @@ impl Mesh {
         let cut_point = outline.tooth[0].point(outline.tooth[0].lower);
         let cut_thickness = 2.0 * cut_point[0];
         let body_size = ALONG * cut_thickness / level;
-        let mut root_points =
-            chain(&outline.body, |stretch| divide(stretch, TURN / level, sizing.parts, |_| body_size));
-        // A root without land ends there but for rounding.
-        let (sine, cosine) = libm::sincos(outline.half_pitch);
-        let radius = libm::hypot(root_points[0][0], root_points[0][1]);
-        root_points[0] = [radius * sine, radius * cosine];
-        let flank_points = chain(&outline.tooth, |stretch| {
-            let turn = if stretch.is_flank() { sizing.involute_turn } else { TURN };
-            divide(stretch, turn / level, sizing.parts, |[x, y]| {
+        let root_turn = sizing.fillet.map_or(TURN, |fillet| fillet.turn);
+        let turn = |stretch: &Stretch| if stretch.is_flank() { sizing.involute_turn } else { root_turn } / level;
+        let body = outline.body.iter().map(|stretch| Division::new(stretch, turn(stretch), |_| body_size));
+        let tooth = outline.tooth.iter().map(|stretch| {
+            Division::new(stretch, turn(stretch), |[x, y]| {
                 let size = ALONG * 2.0 * x / level;
                 sizing.focus.map_or(size, |focus| size.min(focus.size + focus.growth * (y - focus.height).abs()))
             })
         });
+        let mut divisions: Vec<Division> = body.chain(tooth).collect();
+        let mut across = Cow::from(&sizing.across);
+        let [mut rim_depth, mut growth] = sizing.rim.map(|size| size / level);
+        rim_depth *= cut_thickness;
+        if let Some(fillet) = sizing.fillet {
+            let stretches = outline.body.iter().chain(&outline.tooth);
+            let of_root = stretches.zip(&divisions).filter(|(stretch, _)| !stretch.is_flank());
+            let least = of_root.map(|(_, division)| division.smallest()).fold(f64::INFINITY, f64::min).max(LEAST_SIZE);
+            grade(&mut divisions, least, fillet.growth);
+            rim_depth = rim_depth.min(least);
+            growth = fillet.growth;
+            across = Cow::from(grading::across(least / cut_thickness, growth, 1.0 / level, sizing.parts));
+        }
+        let (of_body, of_tooth) = divisions.split_at(outline.body.len());
+        let mut root_points = chain(&outline.body, of_body, sizing.parts);
+        // A root without land ends there but for rounding.
+        let (sine, cosine) = libm::sincos(outline.half_pitch);
+        let radius = libm::hypot(root_points[0][0], root_points[0][1]);
+        root_points[0] = [radius * sine, radius * cosine];
+        let flank_points = chain(&outline.tooth, of_tooth, sizing.parts);
 
-        let rows = ToothRows::new(outline, &flank_points, &sizing.across);
-        let top: Vec<[f64; 2]> = (0..sizing.across.len()).map(|place| rows.point(0, place)).collect();
+        let rows = ToothRows::new(outline, &flank_points, &across);
+        let top: Vec<[f64; 2]> = (0..across.len()).map(|place| rows.point(0, place)).collect();
         // From the left sector edge to the right one.
         let half = root_points.len() - 1;
         let rim: Vec<[f64; 2]> = (root_points.iter().take(half).map(|&[x, y]| [-x, y]))
@@ -192,8 +242,7 @@ impl Mesh {
             .chain(root_points.iter().take(half).rev().copied())
             .collect();
         let outer = libm::hypot(cut_point[0], cut_point[1]);
-        let [rim_depth, growth] = sizing.rim.map(|size| size / level);
-        let fractions = depths(outline.bore_radius, outer, [rim_depth * cut_thickness, growth], level, sizing.parts);
+        let fractions = depths(outline.bore_radius, outer, [rim_depth, growth], level, sizing.parts);
 
         let mut nodes = Vec::new();
         let mut body = Grid { columns: rim.len(), numbers: Vec::new() };
@@ -213,7 +262,7 @@ impl Mesh {
                 nodes.push([x * scale, y * scale]);
             }
         }
-        let across = sizing.across.len();
+        let across = across.len();
         let mut tooth = Grid { columns: across, numbers: Vec::new() };
         for row in 0..flank_points.len() {
             for column in 0..across {
@@ -313,37 +362,4 @@ impl Mesh {
     pub fn corners(&self, element: usize) -> [[f64; 2]; NODES] {
         self.elements[element].map(|node| self.nodes[node])
     }
-}
-
-/// Rows of the body as fractions of the way from the bore to the rim, corners and middles alternating: the depth of an
-/// element is `rim` at the rim, grows with the distance from it, and is at most in proportion to the radius; each is cut into
-/// `parts`.
-fn depths(bore: f64, outer: f64, [rim, growth]: [f64; 2], level: f64, parts: usize) -> Vec<f64> {
-    let proportion = PROPORTION / level;
-    let depth = outer - bore;
-    // Where the two sizes are equal.
-    let turn = ((proportion * outer - rim) / (growth + proportion)).clamp(0.0, depth);
-    let near = libm::log1p(growth * turn / rim) / growth;
-    let far = libm::log((outer - turn) / bore) / proportion;
-    let total = near + far;
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few dozen
-    let count = parts * libm::round(total).max(2.0) as usize;
-    let place = |k: usize| {
-        if k == 0 {
-            return 0.0;
-        }
-        let weight = total * (1.0 - k as f64 / count as f64);
-        let below = if weight <= near {
-            libm::expm1(growth * weight) * rim / growth
-        } else {
-            outer - (outer - turn) * libm::exp(-proportion * (weight - near))
-        };
-        1.0 - below / depth
-    };
-    let mut fractions = Vec::new();
-    for k in 0..count {
-        fractions.extend([place(k), 0.5 * (place(k) + place(k + 1))]);
-    }
-    fractions.push(1.0);
-    fractions
 }

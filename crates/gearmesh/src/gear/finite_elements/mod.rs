@@ -1,12 +1,14 @@
 //! Finite elements: a whole gear, clamped at its bore, from one meshed sector.
 //!
-//! `outline` is the exact boundary of half a tooth, `mesh` the sector, `tooth_rows` the nodes of its tooth, `element` the
-//! quadrilateral, `sector` its factorised stiffness, `wheel` the ring of sectors, `point_load` a load less its own field,
-//! `gear_model` what a load on a tooth does to it and its neighbours, `root_stress` the stress at its root.
+//! `outline` is the exact boundary of half a tooth, `mesh` the sector, `tooth_rows` the nodes of its tooth, `grading` sizes of
+//! elements that grow with the distance, `element` the quadrilateral, `sector` its factorised stiffness, `wheel` the ring of
+//! sectors, `point_load` a load less its own field, `gear_model` what a load on a tooth does to it and its neighbours,
+//! `root_stress` the stress at its root.
 //! Lengths in modules, E = 1, forces per width. Must not know: pairs, contact, tables.
 
 pub mod element;
 pub mod gear_model;
+mod grading;
 pub mod mesh;
 pub mod outline;
 pub mod point_load;

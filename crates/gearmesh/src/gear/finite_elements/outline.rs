@@ -159,40 +159,92 @@ fn cut(stretches: &[Stretch]) -> (usize, f64) {
     (place, samples.parameters[found])
 }
 
-/// Parameters of corner and middle nodes, alternating, on a stretch with elements of the length `size` at a point, and
-/// none that turns by more than `turn`; each of them then cut into `parts`.
-#[must_use]
-pub fn divide(stretch: &Stretch, turn: f64, parts: usize, size: impl Fn([f64; 2]) -> f64) -> Vec<f64> {
-    let samples = Samples::new(stretch);
-    let mut weights = vec![0.0];
-    for k in 0..SAMPLES {
-        let length = samples.lengths[k + 1] - samples.lengths[k];
-        let [from, to] = [k.max(1) - 1, k.min(SAMPLES - 2) + 1];
-        let direction = |k: usize| {
-            let ([x, y], [p, q]) = (samples.points[k], samples.points[k + 1]);
-            libm::atan2(q - y, p - x)
+/// Sizes of the elements on a stretch, by the samples of its curve.
+pub struct Division<'a> {
+    stretch: &'a Stretch,
+    samples: Samples,
+    /// Elements in each interval between samples.
+    densities: Vec<f64>,
+}
+
+impl<'a> Division<'a> {
+    /// Elements of the length `size` at a point, and none that turns by more than `turn`.
+    #[must_use]
+    pub fn new(stretch: &'a Stretch, turn: f64, size: impl Fn([f64; 2]) -> f64) -> Self {
+        let samples = Samples::new(stretch);
+        let density = |k: usize| {
+            let length = samples.lengths[k + 1] - samples.lengths[k];
+            let [from, to] = [k.max(1) - 1, k.min(SAMPLES - 2) + 1];
+            let direction = |k: usize| {
+                let ([x, y], [p, q]) = (samples.points[k], samples.points[k + 1]);
+                libm::atan2(q - y, p - x)
+            };
+            let turned = (direction(to) - direction(from)) / (to - from) as f64;
+            // A curve's direction never jumps by half a turn.
+            let turned = libm::remainder(turned, 2.0 * PI).abs();
+            (length / size(samples.points[k])).max(turned / turn)
         };
-        let turned = (direction(to) - direction(from)) / (to - from) as f64;
-        // A curve's direction never jumps by half a turn.
-        let turned = libm::remainder(turned, 2.0 * PI).abs();
-        let weight = (length / size(samples.points[k])).max(turned / turn);
-        weights.push(weights[k] + weight);
+        let densities = (0..SAMPLES).map(density).collect();
+        Self { stretch, samples, densities }
     }
-    let total = weights[SAMPLES];
-    // A few dozen elements at most.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let count = parts * libm::round(total).max(1.0) as usize;
-    let corners: Vec<f64> =
-        (0..=count).map(|k| invert(&weights, &samples.lengths, total * (k as f64 / count as f64))).collect();
-    let mut parameters = Vec::new();
-    for pair in corners.windows(2) {
-        for length in [pair[0], 0.5 * (pair[0] + pair[1])] {
-            parameters.push(invert(&samples.lengths, &samples.parameters, length));
+
+    fn length(&self, k: usize) -> f64 {
+        self.samples.lengths[k + 1] - self.samples.lengths[k]
+    }
+
+    /// The least length of an element \[modules\].
+    #[must_use]
+    pub fn smallest(&self) -> f64 {
+        (0..SAMPLES).map(|k| self.length(k) / self.densities[k]).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Parameters of corner and middle nodes, alternating, each element cut into `parts`.
+    #[must_use]
+    pub fn parameters(&self, parts: usize) -> Vec<f64> {
+        let samples = &self.samples;
+        let mut weights = vec![0.0];
+        for density in &self.densities {
+            weights.push(weights[weights.len() - 1] + density);
         }
+        let total = weights[SAMPLES];
+        // A few dozen elements at most.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let count = parts * libm::round(total).max(1.0) as usize;
+        let corners: Vec<f64> =
+            (0..=count).map(|k| invert(&weights, &samples.lengths, total * (k as f64 / count as f64))).collect();
+        let mut parameters = Vec::new();
+        for pair in corners.windows(2) {
+            for length in [pair[0], 0.5 * (pair[0] + pair[1])] {
+                parameters.push(invert(&samples.lengths, &samples.parameters, length));
+            }
+        }
+        parameters[0] = self.stretch.lower;
+        parameters.push(self.stretch.upper);
+        parameters
     }
-    parameters[0] = stretch.lower;
-    parameters.push(stretch.upper);
-    parameters
+}
+
+/// Lets the elements of a chain of stretches be no shorter than `least` and grow by no more than `growth` for each length
+/// along it.
+pub fn grade(divisions: &mut [Division], least: f64, growth: f64) {
+    let places: Vec<[usize; 2]> =
+        (0..divisions.len()).flat_map(|stretch| (0..SAMPLES).map(move |k| [stretch, k])).collect();
+    let mut pass = |[stretch, k]: [usize; 2], allowed: &mut f64| {
+        let division = &mut divisions[stretch];
+        let length = division.length(k);
+        *allowed += 0.5 * growth * length;
+        let size = (length / division.densities[k]).max(least).min(*allowed);
+        division.densities[k] = length / size;
+        *allowed = size + 0.5 * growth * length;
+    };
+    let mut allowed = f64::INFINITY;
+    for &place in &places {
+        pass(place, &mut allowed);
+    }
+    allowed = f64::INFINITY;
+    for &place in places.iter().rev() {
+        pass(place, &mut allowed);
+    }
 }
 
 /// The value of `others` where `ascending` is `wanted`, by straight lines between samples.

@@ -3,7 +3,7 @@
 //! A row is an arc through both flanks. Where the tip is broken by a chamfer or a rounding the last row lies on it, and
 //! those beneath go over into arcs. Lengths in modules. Must not know: elements, elasticity.
 
-use super::outline::{Outline, Stretch};
+use super::outline::{Division, Outline, Stretch};
 
 /// How much steeper than the circumference the cut curve dips at its ends \[rad\]: the angles about its end are then
 /// 45°, 67.5° and 67.5°.
@@ -14,14 +14,11 @@ const FADE: f64 = 4.0;
 const LONGEST_FADE: f64 = 0.5;
 
 /// The points of a chain of stretches; where two meet there is only one.
-pub(super) fn chain(
-    stretches: &[super::outline::Stretch],
-    divide: impl Fn(&super::outline::Stretch) -> Vec<f64>,
-) -> Vec<[f64; 2]> {
+pub(super) fn chain(stretches: &[Stretch], divisions: &[Division], parts: usize) -> Vec<[f64; 2]> {
     let mut points: Vec<[f64; 2]> = Vec::new();
-    for stretch in stretches {
+    for (stretch, division) in stretches.iter().zip(divisions) {
         points.pop();
-        points.extend(divide(stretch).into_iter().map(|parameter| stretch.point(parameter)));
+        points.extend(division.parameters(parts).into_iter().map(|parameter| stretch.point(parameter)));
     }
     points
 }

@@ -101,6 +101,8 @@ impl Stated for FilletProblem {
     }
 }
 
+/// Parts of the elements of a mesh that is graded to the fillet.
+const PARTS: usize = 2;
 /// The smallest radius that is tried, as a share of the largest; a sharp root has no finite stress.
 const LEAST_SHARE: f64 = 0.1;
 
@@ -139,7 +141,12 @@ impl Fillet {
     }
 
     fn objective(&self, gear: &Gear, root: &Root) -> Result<f64, MeshError> {
-        let model = GearModel::new(gear, root, self.stated.plane, &Sizing::even(self.stated.elements_across as usize))?;
+        let across = self.stated.elements_across as usize;
+        let sizing = match self.stated.minimize {
+            Objective::Stress => Sizing::graded(across, PARTS),
+            Objective::Compliance => Sizing::even(across),
+        };
+        let model = GearModel::new(gear, root, self.stated.plane, &sizing)?;
         if self.stated.minimize == Objective::Compliance {
             return Ok(model.influences(&[self.roll], 0)?.own[0]);
         }

@@ -28,6 +28,8 @@ pub struct LargestRootStress {
     pub extremum: Extremum,
     /// Radius of its place on the root \[m\]; NaN without load.
     pub radius: f64,
+    /// Estimated relative error of the stress, of the influences on this gear's roots.
+    pub error_estimate: f64,
 }
 
 /// Influences on the roots of both gears, quick to add up.
@@ -44,6 +46,7 @@ struct Root {
     coefficients: Vec<Vec<f64>>,
     /// By the loaded tooth: what a load along the flank at its tip does, place by place, if that is known.
     along: Vec<Vec<f64>>,
+    error_estimate: f64,
 }
 
 impl Roots {
@@ -54,7 +57,7 @@ impl Roots {
 
 impl Root {
     fn new(influences: &RootInfluences) -> Self {
-        let RootInfluences { radii, lengths, stresses, along } = influences;
+        let RootInfluences { radii, lengths, stresses, along, error_estimate } = influences;
         let of_tooth = |places: &Vec<Series>| {
             let orders = places.iter().map(|series| series.coefficients().len()).max().unwrap_or(0);
             let of = |order: usize| places.iter().map(move |series| series.coefficients().get(order).copied());
@@ -62,7 +65,8 @@ impl Root {
         };
         let range = stresses.iter().flatten().next().map_or([-1.0, 1.0], |series| [series.lower(), series.upper()]);
         let coefficients = stresses.iter().map(of_tooth).collect();
-        Self { radii: radii.clone(), lengths: lengths.clone(), range, coefficients, along: along.clone() }
+        let (radii, lengths, along) = (radii.clone(), lengths.clone(), along.clone());
+        Self { radii, lengths, range, coefficients, along, error_estimate: *error_estimate }
     }
 
     /// Adds to the stress at every place what a load per width at a roll angle does, on a tooth so many pitches further; at the
@@ -153,7 +157,8 @@ impl LoadCase<'_> {
             let stress = |position: f64, pairs: usize| at(position, pairs).map_or(0.0, |root| root.stress);
             let extremum = traces[gear].largest(&self.cycle.rows, self.refining(), stress);
             let radius = at(extremum.position, extremum.pairs)?.radius;
-            Some(LargestRootStress { extremum, radius })
+            let error_estimate = self.cycle.roots.as_deref()?.0[gear].error_estimate;
+            Some(LargestRootStress { extremum, radius, error_estimate })
         };
         Some([of(0)?, of(1)?])
     }

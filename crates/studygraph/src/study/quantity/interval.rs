@@ -35,7 +35,9 @@ pub struct Interval {
     dimension: Option<Dimension>,
     /// What the field may be.
     range: (f64, f64),
-    place: Place,
+    pub place: Place,
+    /// As it is written.
+    pub text: String,
 }
 
 impl Interval {
@@ -167,7 +169,8 @@ impl Measure<'_> {
         }
         let unit = if self.dimension.is_none_or(|dimension| dimension == RATIO) { "" } else { split_quantity(&own).1 };
         let (unit, range) = (unit.to_owned(), (self.minimum, self.maximum));
-        Ok(Some(Interval { middle, half, unit, dimension: self.dimension, range, place: node.place }))
+        let text = text.clone();
+        Ok(Some(Interval { middle, half, unit, dimension: self.dimension, range, place: node.place, text }))
     }
 
     /// A half-width in percent, which may be a share of the number, or as many hundredths; what else in percent is no ratio.

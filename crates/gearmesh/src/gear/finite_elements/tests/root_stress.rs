@@ -1,8 +1,12 @@
 //! Influences of loads on the stress of roots: their own field taken off against loads at nodes.
 
-use super::super::gear_model::FlankLoad;
+use super::super::gear_model::{FlankLoad, GearModel};
+use super::super::mesh::Sizing;
 use super::{gear, model, shifted, standard};
+use crate::gear::geometry::pinion_cutter::PinionCutter;
 use crate::gear::geometry::root::RootShape;
+use crate::gear::geometry::{Rack, Specification};
+use crate::gear::material::Plane;
 use crate::numeric::chebyshev::{Series, nodes};
 use crate::numeric::parabola::peak;
 
@@ -127,6 +131,83 @@ fn the_largest_influence_is_smooth_in_the_load_s_place() {
             let case = format!("z {teeth}, {count} nodes, load at {:.3}", (roll - form) / (tip - form));
             assert!(worst < every, "{case}: {worst:.1e}");
             assert!((ours_peak / direct_peak - 1.0).abs() < of_peak, "{case}: {ours_peak} for {direct_peak}");
+        }
+    }
+}
+
+/// A gear and a root whose fillet may be sharp, on a bore of r_f/1.6.
+type Sharp = (Specification, RootShape);
+
+/// The largest stress under loads at places of the flank, as parts of it, on a mesh that is graded to the fillet.
+fn graded((specification, shape): &Sharp, [across, parts]: [usize; 2], loads: &[f64]) -> Vec<f64> {
+    let (gear, root) = gear(specification, *shape);
+    let model = GearModel::new(&gear, &root, Plane::Strain, &Sizing::graded(across, parts)).unwrap();
+    let (form, end) = (root.form_roll, gear.flank_end.roll);
+    let rolls: Vec<f64> = loads.iter().map(|part| form + part * (end - form)).collect();
+    let found = model.stress_influences(&rolls, 0).unwrap();
+    let lengths: Vec<f64> = found.gauges.iter().map(|gauge| gauge.length).collect();
+    found.stresses[0].iter().map(|stresses| peak(&lengths, &lengths, stresses).unwrap().0).collect()
+}
+
+fn racked(teeth: u32, shift: f64, rack: Rack) -> Specification {
+    let bore_radius = (0.5 * f64::from(teeth) - rack.dedendum + shift) / 1.6;
+    Specification { rack, bore_radius, ..shifted(teeth, shift, 1.0) }
+}
+
+fn of_rack(teeth: u32, shift: f64, tip_radius: f64) -> Sharp {
+    let rack = Rack { addendum: 1.0, dedendum: 1.25, tip_radius, ..Rack::ISO_53_A };
+    (racked(teeth, shift, rack), RootShape::Trochoid)
+}
+
+/// Tier: second method; a program of boundary elements, quadratic ones along the same curves of a whole gear that is held at
+/// its bore, whose stress no longer changes by 1e-4 from 621 to 663 of them: 2.9780 under a load at 0.6 of the flank.
+#[test]
+fn a_sharp_root_is_stressed_as_boundary_elements_say() {
+    let found = graded(&of_rack(17, 0.5, 0.1), [16, 2], &[0.6])[0];
+    assert!((found / 2.9780 - 1.0).abs() < 1e-3, "{found}");
+}
+
+/// Tier: convergence; with 16 elements across, the default, the largest stress is right to 0.3 % for tip radii of the tool of a
+/// twentieth of the module and more, and of a hundredth too where few teeth leave a rounder root. Values of the mesh of
+/// which each element is a sixteenth of one of those; meshes that know nothing of the fillet are 1 to 3 % off.
+#[test]
+fn sharp_roots_are_right_to_three_in_a_thousand() {
+    for (sharp, exact) in [
+        (of_rack(17, 0.5, 0.1), [2.7599, 3.9974]),
+        (of_rack(17, 0.5, 0.01), [3.4728, 4.9114]),
+        (of_rack(60, 0.5, 0.1), [2.7390, 4.4946]),
+        (of_rack(60, 0.0, 0.05), [3.0302, 4.6940]),
+        (of_rack(12, 0.0, 0.2), [3.5480, 4.6430]),
+        (of_rack(17, 0.0, 0.38), [2.5643, 3.5786]),
+    ] {
+        let found = graded(&sharp, [16, 2], &[0.4, 0.9]);
+        for (found, exact) in found.iter().zip(exact) {
+            assert!((found / exact - 1.0).abs() < 3e-3, "{:?}: {found} for {exact}", sharp.0.rack);
+        }
+    }
+}
+
+/// Tier: convergence; the same of circular fillets, cutters with sharp tips, protuberances and notches, against a mesh of
+/// which each element is four ninths as large.
+#[test]
+fn roots_of_other_tools_are_right_to_three_in_a_thousand() {
+    let rack = |tip_radius: f64| Rack { addendum: 1.0, dedendum: 1.25, tip_radius, ..Rack::ISO_53_A };
+    let deep = Rack { dedendum: 1.4, tip_radius: 0.1, notch_radius: 0.15, ..Rack::ISO_53_A };
+    let shaped = |teeth, tip_radius| {
+        let cutter = Some(PinionCutter { teeth: 20, profile_shift: 0.1, addendum: 1.25, tip_radius });
+        (Specification { cutter, ..racked(teeth, 0.1, rack(0.38)) }, RootShape::Trochoid)
+    };
+    for sharp in [
+        (racked(30, 0.0, rack(0.05)), RootShape::CircularFillet),
+        shaped(25, 0.05),
+        shaped(40, 0.0),
+        (racked(20, 0.1, Rack { protuberance: 0.06, ..deep }), RootShape::Trochoid),
+        (racked(40, 0.1, Rack { machining_allowance: 0.06, ..deep }), RootShape::Trochoid),
+        of_rack(150, -0.4, 0.25),
+    ] {
+        let [found, fine] = [[16, 2], [24, 3]].map(|sizes| graded(&sharp, sizes, &[0.4, 0.9]));
+        for (found, fine) in found.iter().zip(&fine) {
+            assert!((found / fine - 1.0).abs() < 3e-3, "{:?}: {found} for {fine}", sharp.0);
         }
     }
 }
