@@ -356,3 +356,56 @@ fn intervals_are_set_cut_archived_and_compared() {
     desk.run(&["shard", "merge", "plan"], 0);
     assert_eq!(desk.contents("rounded"), whole);
 }
+
+/// The warnings of a study that is valid.
+fn warned(text: &str) -> Vec<String> {
+    load(text).warnings().collect()
+}
+
+/// Reported once for a study: an interval that no report sets anything against, with its field, its line and the way to a tolerance.
+#[test]
+fn an_interval_without_effect_is_warned_of() {
+    let wide = STE.replace("amount: 8 um", "amount: 20 um ± 3 um");
+    let alone = format!("study: t\nseed: 3\nstages:{PAIR}{wide}");
+    let found = warned(&alone);
+    let [only] = &found[..] else { panic!("{found:?}") };
+    let line = 1 + alone[..alone.find('±').unwrap()].matches('\n').count();
+    for part in [
+        "`designs.designs.relieved[0].tip_relief.amount` is `20 um ± 3 um`",
+        "not a tolerance",
+        "computed with `20 um`",
+        "kind `scatter`",
+        "{ field: designs.designs.relieved[0].tip_relief.amount, within: ± 3 um }",
+        &format!(":{line}:"),
+    ] {
+        assert!(only.contains(part), "{part}: {only}");
+    }
+
+    // A report of other stages does not use it; one of a stage that reads it does.
+    let of_pair = row(DIAMETER, "57 mm");
+    assert_eq!(warned(&study(&[PAIR, &wide], &of_pair)).len(), 1);
+    let of_ste = row("\"ste.summary[design=relieved, torque=50 N m].peak_to_peak\"", "2 um");
+    assert!(warned(&study(&[PAIR, &wide], &of_ste)).is_empty());
+
+    // Several are one warning with their lines; what the report uses is not among them.
+    let pair = PAIR.replace("0.21", "0.21 ± 0.005").replace("14.079 mm", "14.079 ± 0.001 mm");
+    let found = warned(&format!("study: t\nseed: 3\nstages:{pair}{wide}"));
+    assert!(found.len() == 1 && found[0].contains("; the same is true of the intervals in lines "), "{found:?}");
+    let found = warned(&study(&[&pair, &wide], &of_pair));
+    assert!(found.len() == 1 && found[0].contains("`20 um ± 3 um`") && !found[0].contains("lines"), "{found:?}");
+}
+
+/// A number of several stages, by an alias, has an effect if it has one in any of them; numbers alone are never warned of.
+#[test]
+fn an_interval_with_an_effect_is_not_warned_of() {
+    let pair = PAIR.replace("14.079 mm", "14.079 ± 0.001 mm").replacen("  pair:", "  pair: &pair", 1);
+    let other = "  other: { <<: *pair }\n";
+    assert!(warned(&study(&[&pair, other], &row(DIAMETER, "57 mm"))).is_empty());
+    assert!(warned(&study(&[PAIR, STE], &row(DIAMETER, "57 mm"))).is_empty());
+    for name in ["rating", "sun_planet"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies").join(format!("{name}.yaml"));
+        let text = std::fs::read_to_string(&path).unwrap();
+        let study = program::load_text(&text, &path).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(study.warnings().collect::<Vec<_>>(), Vec::<String>::new(), "{name}");
+    }
+}
