@@ -28,7 +28,8 @@ const TORQUE: f64 = 28.0;
 fn theirs(side: Side, plane: Plane, across: usize, loads: &[(usize, f64, f64)]) -> Option<f64> {
     let pair = pair();
     let gear = pair.side(side);
-    let model = super::model(gear, plane, &Sizing::even(across));
+    // The mesh that ours has.
+    let model = super::model(gear, plane, &Sizing::graded(across, 2));
     let (teeth, module) = (gear.specification.teeth as usize, gear.specification.module);
     let wheel = Wheel::new(&vec![&model.mesh; teeth]);
     let material = gear.specification.material;
