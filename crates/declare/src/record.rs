@@ -195,12 +195,12 @@ impl Value {
     fn write(&self, writer: &mut Writer) {
         match self {
             Self::Quantity(value) => writer.text("quantity").float(*value),
-            Self::AnyQuantity { value, dimension, .. } => {
+            Self::AnyQuantity { value, dimension, unit } => {
                 let Dimension { length, mass, time, angle } = *dimension;
                 for exponent in [length, mass, time, angle] {
                     writer.integer(exponent.into());
                 }
-                writer.float(*value)
+                writer.text(unit).float(*value)
             }
             Self::Axis(values) => writer.text("axis").floats(values),
             Self::Range(minimum, maximum) => writer.text("range").float(*minimum).float(*maximum),

@@ -194,7 +194,7 @@ impl Scatter {
         for limit in &self.limits {
             all.text(&limit.text);
         }
-        Rows::new(self, OF_ROWS, &shared, all)
+        Rows::new(self, OF_ROWS, shared, all)
     }
 }
 

@@ -145,7 +145,7 @@ impl Sweep {
         }
         let mut all = Writer::new("gearstudy 1 sweep of all");
         all.count(self.objective).count(self.best);
-        Rows::new(self, OF_ROWS, &shared, all)
+        Rows::new(self, OF_ROWS, shared, all)
     }
 }
 

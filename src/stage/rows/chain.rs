@@ -7,6 +7,7 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::stage::neglected_corners;
 use crate::stage::{self, Context, Demand, Inputs, Kind, Port, Stage, Want};
+use declare::digest::Writer;
 use declare::error::{Diagnostic, Failure};
 use declare::record::Record;
 use declare::record::varied::{self, Varied};
@@ -121,6 +122,27 @@ impl Chain {
         let name = format!("{} of {} {}", port.name, built[index].0.name, index + 1);
         self.outer.push(Port { name, stage, through, wants: port.wants.clone(), only_for: &[] });
         Source::Outer(self.outer.len() - 1)
+    }
+
+    /// Digest of where the stages read what, and what is asked of each.
+    pub fn write(&self, writer: &mut Writer) {
+        writer.count(self.links.len());
+        for Link { kind, record: _, ports, demand, uses_seed } in &self.links {
+            writer.text(kind.name).flag(*uses_seed).count(ports.len());
+            for (port, source) in ports {
+                match source {
+                    Source::Outer(at) => writer.text(&port.name).text(&self.outer[*at].name),
+                    Source::Link(read) => writer.text(&port.name).count(*read),
+                };
+            }
+            writer.count(demand.tables.len());
+            for (table, columns) in &demand.tables {
+                writer.text(table).count(columns.len());
+                for column in columns {
+                    writer.text(column);
+                }
+            }
+        }
     }
 
     /// What a stage reads, of the tables of those that were run and of the study.

@@ -84,7 +84,12 @@ pub struct Rows<S> {
 impl<S: Gathered> Rows<S> {
     /// `fields` say which rows there are, `shared` is what every row depends on besides, `all` what the last part depends on
     /// besides the others.
-    pub fn new(gathered: S, fields: &'static [&'static str], shared: &Writer, mut all: Writer) -> Self {
+    pub fn new(gathered: S, fields: &'static [&'static str], mut shared: Writer, mut all: Writer) -> Self {
+        gathered.asked().write(&mut shared);
+        // Tables that are made of all rows name the fields.
+        for column in &gathered.asked().columns {
+            all.text(&column.axis.path);
+        }
         let layout = gathered.layout();
         let mut each: Vec<Digest> = (0..layout.parts()).map(|part| layout.digest(part)).collect();
         all.count(each.len());

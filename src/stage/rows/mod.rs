@@ -20,6 +20,7 @@ use self::output::Output;
 use self::quick::Quick;
 use crate::stage::{Demand, Estimate, Omission, RowCount, common};
 use declare::declared::Placed;
+use declare::digest::Writer;
 use declare::error::Diagnostic;
 use declare::record::Value;
 use declare::record::varied::{Axis, Slot, Varied};
@@ -105,7 +106,7 @@ impl Question<'_> {
             self.varied.axes.iter().map(|axis| Column { axis: axis.clone(), class: class(axis) }).collect();
         if let Some(asked) = self.varied.stages.last() {
             let is_varied = |field: &str| columns.iter().any(|column| quick::is_at(column, last, &asked.filled, field));
-            if let Some((field, entry)) = quick::several(&asked.record, is_varied) {
+            if let Some((field, entry)) = quick::several(&asked.filled, is_varied) {
                 return Err(Diagnostic::new(format!(
                     "`{}` has several values of `{field}`, and a row has one",
                     self.of
@@ -231,7 +232,7 @@ impl Prepared {
         demands.push(demand);
         let chain = Chain::new(&varied, demands)?;
         let quick = Quick::new(&chain, &columns, &outputs, design.as_deref());
-        let settings = quick.as_ref().and(varied.stages.last()).map(|asked| quick::sampling(&asked.record));
+        let settings = quick.as_ref().and(varied.stages.last()).map(|asked| quick::sampling(&asked.filled));
         let is_key = columns.iter().map(is_key).collect();
         let schema = Schema::new("", "", Vec::new());
         let mut asked = Asked { chain, columns, is_key, leading, outputs, design, quick, schema, settings };
@@ -263,6 +264,14 @@ impl Asked {
     /// Whether any of them draws random numbers.
     pub fn uses_seed(&self) -> bool {
         self.chain.links.iter().any(|link| link.uses_seed)
+    }
+
+    /// Digest of what was learned from the study's own fields, whose varied values are in no part's key: the stages' ports and
+    /// tables, and the columns that are asked for.
+    pub fn write(&self, writer: &mut Writer) {
+        self.chain.write(writer);
+        writer.text(self.design.as_deref().unwrap_or_default()).flag(self.quick.is_some());
+        self.schema.write(writer);
     }
 
     /// What so many rows take.

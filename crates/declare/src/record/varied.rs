@@ -15,8 +15,8 @@ pub const INTERVALS: &str = "intervals";
 /// What is varied, and the stages that this concerns.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Varied {
-    /// Of the asked stage and of all that it reads, near or far: the kind, and all fields as the study has them. They are no
-    /// part of a digest: what of them matters comes as tables.
+    /// Kind and fields, as the study has them, of the asked stage and of all that it reads, near or far. Empty unless an axis
+    /// states a class of tolerances, whose width depends on them.
     pub nearby: Vec<(&'static str, Record)>,
     /// Those that have a varied field, those that read them, and the asked one, each after all it reads.
     pub stages: Vec<Stage>,
@@ -188,21 +188,26 @@ impl Varied {
         }
     }
 
-    /// What all values have in common: the stages without what is varied in them, and which fields are.
+    /// Digest of the input that all values share: the stages without the varied values, and which fields those are.
+    ///
+    /// For stages that cut themselves into rows. A row has its own value in each axis, so the study's own values are left out
+    /// here; a stage that reads one, or anything that follows from one, must write it beside this.
     pub fn write_shared(&self, writer: &mut Writer) {
         writer.text("varied").count(self.stages.len());
         for (index, stage) in self.stages.iter().enumerate() {
-            let mut record = stage.filled.clone();
+            // Destructured in full, here and in `write`: whoever adds a field has to decide whether it is written.
+            let Stage { name: _, kind, record: _, filled, reads } = stage;
+            let mut filled = filled.clone();
             for axis in self.axes.iter().filter(|axis| axis.stage == index) {
-                if let Some(entry) = axis.slot.entry_mut(&mut record) {
+                if let Some(entry) = axis.slot.entry_mut(&mut filled) {
                     entry.value = Value::Flag(true);
                 }
             }
-            writer.text(stage.kind).count(stage.reads.len());
-            for read in &stage.reads {
+            writer.text(kind).count(reads.len());
+            for read in reads {
                 writer.count(read.map_or(0, |index| index + 1));
             }
-            record.write(writer);
+            filled.write(writer);
         }
         writer.count(self.axes.len());
         for axis in &self.axes {
@@ -213,11 +218,38 @@ impl Varied {
         }
     }
 
-    /// All of it.
+    /// Digest of everything in it that a stage can read: also the study's own values, and the names that appear in messages.
     pub fn write(&self, writer: &mut Writer) {
+        let Self { nearby, stages, axes, held } = self;
         self.write_shared(writer);
-        for axis in &self.axes {
-            match &axis.values {
+        writer.count(nearby.len());
+        for (kind, record) in nearby {
+            writer.text(kind);
+            record.write(writer);
+        }
+        for Stage { name, kind: _, record, filled: _, reads: _ } in stages {
+            writer.text(name);
+            record.write(writer);
+        }
+        for axis in axes {
+            // Dimension, multiple and range follow from the declaration of the field, which is part of the code of its kind.
+            let Axis {
+                path,
+                place,
+                values,
+                name: _,
+                stage: _,
+                slot: _,
+                unit: _,
+                dimension: _,
+                multiple: _,
+                values_place: _,
+                range: _,
+            } = axis;
+            // Axes at one place of the text are one number that the study uses several times.
+            let first = axes.iter().position(|other| other.place == *place);
+            writer.text(path).count(first.unwrap_or_default());
+            match values {
                 Values::Each(values) => writer.text("each").floats(values),
                 Values::Between(from, to) => writer.text("between").float(*from).float(*to),
                 Values::Follows(formula) => writer.text("follows").text(formula),
@@ -226,6 +258,10 @@ impl Varied {
                     continue;
                 }
             };
+        }
+        writer.count(held.len());
+        for name in held {
+            writer.text(name);
         }
     }
 }
@@ -443,6 +479,41 @@ mod tests {
         assert_ne!(digests(&one).0, digests(&other).0);
         let mut renamed = one.clone();
         renamed.stages[0].name = "t".into();
-        assert_eq!(digests(&one), digests(&renamed), "what a stage is called is no part of a result");
+        assert_eq!(digests(&one).0, digests(&renamed).0, "rows do not show the names of stages");
+    }
+
+    /// Everything that a stage can read of it, beside places and what follows from declarations.
+    #[test]
+    fn whatever_a_stage_can_read_is_in_the_digest_of_all() {
+        let stage = |name: &str| Stage {
+            name: name.into(),
+            kind: "k",
+            record: record(),
+            filled: record(),
+            reads: vec![None],
+        };
+        let axes = [axis(), Axis { name: "again".into(), place: at(10), ..axis() }];
+        let varied = Varied { stages: vec![stage("s")], axes: axes.into(), ..Varied::default() };
+        let digest = |varied: &Varied| {
+            let mut writer = Writer::new("test");
+            varied.write(&mut writer);
+            writer.finish()
+        };
+        let changes: [(&str, &dyn Fn(&mut Varied)); 9] = [
+            ("own value", &|varied| axis().put(&mut varied.stages[0].record, 9e-6)),
+            ("name of a stage", &|varied| varied.stages[0].name = "t".into()),
+            ("field of a stage", &|varied| drop(varied.stages[0].record.fields.remove(0))),
+            ("what a stage reads", &|varied| varied.stages[0].reads = vec![Some(0)]),
+            ("path", &|varied| varied.axes[0].path = "t.amount".into()),
+            ("unit", &|varied| varied.axes[0].unit = "mm".into()),
+            ("one number for two", &|varied| varied.axes[1].place = varied.axes[0].place),
+            ("nearby stages", &|varied| varied.nearby = vec![("k", record())]),
+            ("held stages", &|varied| varied.held = vec!["h".into()]),
+        ];
+        for (what, change) in changes {
+            let mut other = varied.clone();
+            change(&mut other);
+            assert_ne!(digest(&varied), digest(&other), "{what}");
+        }
     }
 }

@@ -17,7 +17,7 @@ use super::words::{alternatives, expected, quote};
 use declare::error::{Diagnostic, Place};
 use declare::parameter::Shape;
 use declare::record::Record;
-use declare::record::varied::{Axis, Slot, Stage, Values, Varied};
+use declare::record::varied::{Axis, Form, Slot, Spread, Stage, Values, Varied};
 use declare::units::{LENGTH, RATIO, parse_quantity, split_quantity};
 
 /// What names of columns look like, as a regular expression: they are words of formulas and of SQL.
@@ -59,8 +59,13 @@ pub fn varied(stages: Stages, of: &Reference, pairs: &[KeyValue]) -> Result<Vari
     }
     let index = |name: &str| kept.iter().position(|link| link.name == name);
     let filled = Stages { pairs: &tree, ..stages };
-    let nearby = links.iter().map(|link| (link.kind.name, link.record.clone())).collect();
-    let mut found = Varied { nearby, ..Varied::default() };
+    let is_class = |(axis, _): &(Axis, String)| {
+        matches!(axis.values, Values::Spread(Spread { form: Form::Class(..), .. }))
+    };
+    let mut found = Varied::default();
+    if axes.iter().any(is_class) {
+        found.nearby = links.iter().map(|link| (link.kind.name, link.record.clone())).collect();
+    }
     for link in &kept {
         // What is wrong with the values together is no mistake of the text in any one place.
         let (record, _) = read(filled, &link.name, of.place).map_err(|wrong| wrong.at(of.place))?;

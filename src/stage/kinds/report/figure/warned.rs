@@ -65,8 +65,11 @@ impl Figure {
     }
 }
 
-/// A number of a table, where it is one.
+/// A number of a table, where it is one. One that differs from run to run is none: no key has it.
 fn finite(table: &Table, column: &str, row: usize) -> Option<f64> {
+    if table.schema().column(column).is_some_and(|column| column.volatile) {
+        return None;
+    }
     let value = match table.column(column)? {
         Data::Float(values) => values.get(row).copied(),
         Data::Integer(values) => values.get(row).map(|value| *value as f64),
