@@ -5,7 +5,7 @@ mod messages;
 use std::collections::BTreeMap;
 
 use crate::registry::walk::{Ran, load, walk};
-use studygraph::table::data::Table;
+use studygraph::table::data::{Cell, Table};
 
 const PAIR: &str = "
   pair:
@@ -253,4 +253,85 @@ fn cells_of_several_stages_are_met_together() {
     assert_eq!(said(&found), "one solution meets all within their tolerances");
     let (bore, torque) = (solutions.floats("bore")[0], solutions.floats("torque")[0]);
     assert!((bore - 11.0).abs() < 1e-4 && (torque - 64.0).abs() < 1e-4, "{bore} {torque}");
+}
+
+/// Two measured spans at a centre distance without much backlash.
+fn at_edge(centre_distance: &str, starts: usize) -> String {
+    format!(
+        "
+study: t
+seed: 3
+stages:
+  pair:
+    kind: geometry
+    module: 4 mm
+    centre_distance: {centre_distance}
+    pinion: {{ teeth: 12, profile_shift: 0.3, tip_radius: 29 mm, face_width: 20 mm, bore_radius: 9 mm, measured_with: {{ span_teeth: 2 }} }}
+    gear: {{ teeth: 25, face_width: 20 mm, bore_radius: 15 mm, measured_with: {{ span_teeth: 3 }} }}
+  fit:
+    kind: fit
+    of: pair
+    starts: {starts}
+    vary:
+      x1: {{ field: pair.pinion.profile_shift, from: 0, to: 0.6 }}
+      x2: {{ field: pair.gear.profile_shift, from: -0.4, to: 0.4 }}
+    meet:
+      - {{ cell: \"pair.inspection[gear=pinion].span\", value: 19.70 mm, tolerance: 0.02 mm }}
+      - {{ cell: \"pair.inspection[gear=gear].span\", value: 30.96 mm, tolerance: 0.02 mm }}
+"
+    )
+}
+
+/// The least sum of squares with x1 + x2 no larger than `most`, and where it is: spans are linear in the profile shifts, with
+/// slope 2 m sin α each, so it is a parabola along the edge.
+fn least_at_edge(most: f64) -> (f64, [f64; 2]) {
+    let slope = 8.0 * (20.0_f64.to_radians()).sin();
+    let involute = 20.0_f64.to_radians().tan() - 20.0_f64.to_radians();
+    // W_k = m cos α (π (k − ½) + z inv α) + 2 x m sin α.
+    let span = |teeth: f64, of: f64, x: f64| {
+        4.0 * 20.0_f64.to_radians().cos() * (std::f64::consts::PI * (of - 0.5) + teeth * involute) + slope * x
+    };
+    let sum = |x1: f64| {
+        let one = (span(12.0, 2.0, x1) - 19.70) / 0.02;
+        let two = (span(25.0, 3.0, most - x1) - 30.96) / 0.02;
+        one * one + two * two
+    };
+    let steps = 600_000;
+    let grid = (0..=steps).map(|at| 0.6 * f64::from(at) / f64::from(steps));
+    let least = grid.min_by(|one, two| sum(*one).total_cmp(&sum(*two))).unwrap_or_default();
+    (sum(least), [least, most - least])
+}
+
+/// Tier: closed form along the edge, where backlash ends what is valid. There is one solution, from however many starts.
+#[test]
+fn a_fit_goes_along_the_edge_of_valid_values() {
+    for (centre_distance, starts, published) in
+        [("75.78 mm", 4, 1.124), ("75.81 mm", 4, 0.047), ("75.81 mm", 16, 0.047)]
+    {
+        let found = walk(&load(&at_edge(centre_distance, starts)));
+        let solutions = table(&found, "fit", "solutions");
+        let (x1, x2) = (solutions.floats("x1")[0], solutions.floats("x2")[0]);
+        let (least, [one, two]) = least_at_edge(x1 + x2);
+        let sum = solutions.floats("sum_of_squares")[0];
+        assert!((sum - published).abs() < 1e-3, "{centre_distance}: {sum}");
+        assert!((sum - least).abs() < 1e-5, "{centre_distance}: {sum}, not {least}");
+        assert!((x1 - one).abs() < 1e-5 && (x2 - two).abs() < 1e-5, "{centre_distance}: {x1}, {x2}");
+        assert_eq!(solutions.rows(), 1, "{centre_distance} from {starts}: {:?}", solutions.floats("sum_of_squares"));
+        let edge = &solutions.texts("edge")[0];
+        assert!(edge.starts_with("geometry: "), "{edge:?}");
+        assert!(matches!(solutions.column("settled").map(|data| data.cell(0)), Some(Cell::Flag(true))));
+        let said = said(&found);
+        assert!(
+            said.starts_with("one solution meets all") && said.contains("at the edge of the valid values"),
+            "{said}"
+        );
+        assert!(found["fit"].warnings[0].contains(edge.as_str()), "{:?}", found["fit"].warnings);
+    }
+    let found = walk(&load(&at_edge("76 mm", 4)));
+    let solutions = table(&found, "fit", "solutions");
+    assert!(solutions.rows() == 1 && solutions.floats("sum_of_squares")[0] < 1e-18, "{:?}", said(&found));
+    assert_eq!(
+        (solutions.texts("edge")[0].as_str(), said(&found).as_str()),
+        ("", "one solution meets all within their tolerances")
+    );
 }

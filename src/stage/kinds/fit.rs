@@ -168,12 +168,23 @@ impl Fitting {
             .collect()
     }
 
-    fn solution_row<'a>(&self, (number, solution): (usize, &'a Solution)) -> SolutionRow<'a> {
+    /// By solution, why values beyond it are refused.
+    fn edges(&self, found: &Found, given: (&Context, &Inputs)) -> Result<Vec<String>, Failure> {
+        let mut memory = Memory::default();
+        let one = |solution: &Solution| {
+            let Some(beyond) = &solution.fit.beyond else { return Ok(String::new()) };
+            let answers = self.found(std::slice::from_ref(beyond), &mut memory, given)?;
+            Ok(answers.into_iter().find_map(Result::err).map_or_else(String::new, |refused| refused.message))
+        };
+        found.solutions.iter().map(one).collect()
+    }
+
+    fn solution_row<'a>(&self, number: usize, solution: &'a Solution, edge: &str) -> SolutionRow<'a> {
         let axes = self.followed.axes();
         let values = self.followed.values(&solution.fit.point).unwrap_or_else(|_| vec![f64::NAN; axes.len()]);
         let values = axes.iter().zip(values).map(|(axis, si)| showing(&axis.unit)(si)).collect();
         let deviations = self.shown(solution.deviations(&Uncertainty::of(&solution.fit)));
-        SolutionRow { number: number + 1, solution, values, deviations }
+        SolutionRow { number, solution, values, deviations, edge: edge.to_owned() }
     }
 
     fn parameter_rows(&self, best: &Solution, uncertainty: &Uncertainty) -> Vec<ParameterRow<'_>> {
@@ -301,7 +312,8 @@ impl Stage for Fitting {
         let rows = self.parameter_rows(best, &uncertainty);
         // More intervals than values are not meant to be determined.
         let is_open = best.fit.residuals.len() < self.parameters.len();
-        let said = words::said(&found, &rows, if is_open { "" } else { &flat });
+        let edges = self.edges(&found, (context, inputs))?;
+        let said = words::said(&found, &rows, if is_open { "" } else { &flat }, &edges[0]);
         if said.is_warning {
             (context.warn)(said.text.clone().into());
         }
@@ -326,8 +338,9 @@ impl Stage for Fitting {
             without: found.without,
             evaluations,
         };
+        let solutions = (1..).zip(found.solutions.iter().zip(&edges));
         let solutions: Vec<SolutionRow> =
-            found.solutions.iter().enumerate().map(|solution| self.solution_row(solution)).collect();
+            solutions.map(|(number, (solution, edge))| self.solution_row(number, solution, edge)).collect();
         let made: Vec<Result<Table, TableError>> = vec![
             tables::summary().table(&[summary]),
             tables::parameters().table(&rows),

@@ -3,6 +3,7 @@
 
 mod friction;
 mod goals;
+mod keys;
 mod members;
 mod profiles;
 mod samples;

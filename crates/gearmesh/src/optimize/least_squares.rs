@@ -3,17 +3,20 @@
 //! Levenberg's and Marquardt's method with the bounds as Kanzow, Yamashita and Fukushima have them (J. Comput. Appl. Math. 172
 //! (2004) 375): a parameter that is at its bound and pushes outward is held there, the others take the damped step of Gauss and
 //! Newton, and what leaves the box is put back on its side. Damping after Nielsen (IMM-REP-1999-05, Technical University of
-//! Denmark), columns scaled by the largest length they had (Moré, Lecture Notes in Mathematics 630 (1978) 105).
+//! Denmark), columns scaled by the largest length they had (Moré, Lecture Notes in Mathematics 630 (1978) 105). A search that meets
+//! points at which the model has no residuals goes on along their edge (`edge.rs`).
 //!
 //! Of the crates looked at in 2026 `levenberg-marquardt` 0.15 is MINPACK's method without bounds and brings `nalgebra`; `argmin`
 //! 0.11 has Gauss and Newton's step without either. Both call the model themselves, one point at a time, where this asks for
 //! all points of a derivative at once. Must not know: what parameters and residuals mean.
 
 pub mod derivative;
+mod edge;
 pub mod uncertainty;
 
 use crate::numeric::singular_values::{SingularValues, dot};
 use derivative::Steps;
+use edge::{Along, At};
 
 /// What a model gives at each of some points: its residuals, as many at each point, or none where it has none.
 pub type Answers = Vec<Option<Vec<f64>>>;
@@ -50,6 +53,8 @@ pub enum End {
     Settled,
     /// It would have gone on.
     Unsettled,
+    /// The model has no residuals beyond it, and whether it is least among its neighbours is not known.
+    Stopped,
 }
 
 /// Where a search ended.
@@ -71,6 +76,8 @@ pub struct Fit {
     pub steps: usize,
     /// Why it ended.
     pub end: End,
+    /// Where the search ended at the edge of the points at which the model has residuals: a point beyond it.
+    pub beyond: Option<Vec<f64>>,
 }
 
 /// A step that leads lower.
@@ -90,7 +97,7 @@ impl Search {
         let Some(mut residuals) = evaluate(std::slice::from_ref(&point))?.pop().flatten() else { return Ok(None) };
         let mut steps = Steps::new(&self.bounds, self.noise);
         let mut lengths = vec![0.0_f64; point.len()];
-        let (mut taken, mut damping, mut end) = (0, None, End::Settled);
+        let (mut taken, mut damping, mut end, mut beyond) = (0, None, End::Settled, None);
         let mut jacobian = steps.jacobian(&point, &residuals, evaluate)?;
         let is_held = loop {
             let is_held = self.held(&point, &jacobian, &residuals);
@@ -106,19 +113,43 @@ impl Search {
                 lengths[*at] = lengths[*at].max(dot(&jacobian[*at], &jacobian[*at]).sqrt());
             }
             let damped = Damped::new(&free, &jacobian, &residuals, &lengths);
-            let step = self.step((&point, &residuals, &jacobian), &damped, &mut damping, &steps, evaluate)?;
-            let Some(Step { next, found, is_last }) = step else { break is_held };
-            (point, residuals) = (next, found);
-            taken += 1;
-            if is_last {
-                // So short that the derivatives are as before.
+            let mut is_refused = false;
+            let step = {
+                let asked: Evaluate<E> = &mut |points| {
+                    let answers = evaluate(points)?;
+                    is_refused |= answers.iter().any(Option::is_none);
+                    Ok(answers)
+                };
+                self.step((&point, &residuals, &jacobian), &damped, &mut damping, &steps, asked)?
+            };
+            let is_last = step.as_ref().is_none_or(|step| step.is_last);
+            if let Some(Step { next, found, .. }) = step {
+                (point, residuals) = (next, found);
+                taken += 1;
+            }
+            if is_last && !is_refused {
+                // A last step is so short that the derivatives are as before.
                 break is_held;
             }
             jacobian = steps.jacobian(&point, &residuals, evaluate)?;
+            if !is_refused {
+                continue;
+            }
+            let mut at = At { point, residuals, jacobian, taken };
+            let along = self.along_edge(&mut at, &mut steps, evaluate)?;
+            At { point, residuals, jacobian, taken } = at;
+            damping = None;
+            (end, beyond) = match along {
+                Along::Inside => continue,
+                Along::Least(beyond) => (End::Settled, beyond),
+                Along::Unsettled => (End::Unsettled, None),
+                Along::Stopped(beyond) => (End::Stopped, beyond),
+            };
+            break self.held(&point, &jacobian, &residuals);
         };
         let sum_of_squares = dot(&residuals, &residuals);
         let doubt = steps.doubt(&point);
-        Ok(Some(Fit { point, residuals, jacobian, doubt, is_held, sum_of_squares, steps: taken, end }))
+        Ok(Some(Fit { point, residuals, jacobian, doubt, is_held, sum_of_squares, steps: taken, end, beyond }))
     }
 
     fn inside(&self, point: &[f64]) -> Vec<f64> {

@@ -59,9 +59,8 @@ pub fn varied(stages: Stages, of: &Reference, pairs: &[KeyValue]) -> Result<Vari
     }
     let index = |name: &str| kept.iter().position(|link| link.name == name);
     let filled = Stages { pairs: &tree, ..stages };
-    let is_class = |(axis, _): &(Axis, String)| {
-        matches!(axis.values, Values::Spread(Spread { form: Form::Class(..), .. }))
-    };
+    let is_class =
+        |(axis, _): &(Axis, String)| matches!(axis.values, Values::Spread(Spread { form: Form::Class(..), .. }));
     let mut found = Varied::default();
     if axes.iter().any(is_class) {
         found.nearby = links.iter().map(|link| (link.kind.name, link.record.clone())).collect();

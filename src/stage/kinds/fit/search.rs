@@ -39,6 +39,11 @@ impl Solution {
         self.fit.end == End::Settled
     }
 
+    /// Whether inputs that a stage refuses ended the search.
+    pub fn is_at_edge(&self) -> bool {
+        self.fit.beyond.is_some() || self.fit.end == End::Stopped
+    }
+
     /// √(Σr²/freedom), in tolerances; NaN where there are no more residuals than parameters.
     pub fn scatter(&self) -> f64 {
         let freedom = self.fit.freedom();
@@ -65,9 +70,17 @@ pub struct Found {
 }
 
 impl Found {
-    /// How many of them meet all that is to be met.
+    /// How many different solutions meet all that is to be met. Searches that were stopped short of a least one may be on the way to
+    /// the same: together they are one, where no other is known.
     pub fn meeting(&self) -> usize {
-        self.solutions.iter().filter(|solution| solution.meets()).count()
+        let meeting = || self.solutions.iter().filter(|solution| solution.meets());
+        let settled = meeting().filter(|solution| solution.is_settled()).count();
+        settled.max(usize::from(meeting().next().is_some()))
+    }
+
+    /// Whether inputs that a stage refuses ended any search.
+    pub fn is_at_edge(&self) -> bool {
+        self.solutions.iter().any(Solution::is_at_edge)
     }
 }
 

@@ -149,12 +149,18 @@ pub struct SolutionRow<'a> {
     pub values: Vec<f64>,
     /// Of the parameters alone, in their units.
     pub deviations: Vec<f64>,
+    /// Why values beyond it are refused; empty where none of them ended the search.
+    pub edge: String,
 }
 
 /// `columns` are names, units and paths of all that is varied; of which `parameters` have standard deviations.
 pub fn solutions<'a>(columns: &[(String, String, String)], parameters: &[Parameter]) -> Columns<SolutionRow<'a>> {
     let description = "Where searches ended, the best first: solutions, and what else is least among its neighbours.";
     let meets = "Whether all residuals are within their tolerances.";
+    let settled = "Whether the sum of squares is least among valid values nearby; otherwise the steps ran out, or values that are \
+                   refused stopped the search.";
+    let edge =
+        "Why values beyond it are refused, where it lies at the edge of the valid ones; empty where it does not.";
     let all = Columns::new("solutions", description)
         .integer("solution", "Counts them, from 1.", |row: &SolutionRow<'a>| row.number)
         .key();
@@ -177,7 +183,8 @@ pub fn solutions<'a>(columns: &[(String, String, String)], parameters: &[Paramet
     .flag("meets", meets, |row| row.solution.meets())
     .integer("starts", "How many starts led to it.", |row| row.solution.starts)
     .integer("steps", "Steps from the start that came lowest.", |row| row.solution.fit.steps)
-    .flag("settled", "Whether no step led lower; otherwise the steps ran out.", |row| row.solution.is_settled())
+    .flag("settled", settled, |row| row.solution.is_settled())
+    .text("edge", edge, |row| row.edge.clone())
 }
 
 /// The column of a parameter's standard deviation.
@@ -186,7 +193,8 @@ pub fn deviation_name(name: &str) -> String {
 }
 
 /// Columns of `solutions` that no parameter can be called.
-pub const RESERVED: [&str; 7] = ["solution", "sum_of_squares", "largest", "meets", "starts", "steps", "settled"];
+pub const RESERVED: [&str; 8] =
+    ["solution", "sum_of_squares", "largest", "meets", "starts", "steps", "settled", "edge"];
 
 /// What came of the fit.
 pub struct Summary {

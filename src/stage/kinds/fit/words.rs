@@ -6,6 +6,7 @@ use super::parameters::Parameter;
 use super::search::Found;
 use super::tables::ParameterRow;
 use declare::number::{significant, with_unit};
+use gearmesh::optimize::least_squares::End;
 use gearmesh::optimize::least_squares::uncertainty::Uncertainty;
 
 /// A sentence or several, and whether somebody should hear them.
@@ -39,11 +40,16 @@ pub fn flat(parameters: &[Parameter], uncertainty: &Uncertainty) -> String {
     said.collect::<Vec<_>>().join(", ")
 }
 
-/// How many solutions there are, and what is wrong with the best.
-pub fn said(found: &Found, parameters: &[ParameterRow], flat: &str) -> Said {
+/// How many solutions there are, and what is wrong with the best. `refused` is why values beyond the best are refused.
+pub fn said(found: &Found, parameters: &[ParameterRow], flat: &str, refused: &str) -> Said {
     let best = &found.solutions[0];
     let meeting = found.meeting();
     let mut sentences = vec![match meeting {
+        // The sum of squares is least there, which does not exclude values along the edge that meet all.
+        0 if found.is_at_edge() => format!(
+            "no search ended at values that meet all within their tolerances; the nearest leave one {} tolerances off",
+            significant(best.largest(), 3)
+        ),
         0 => format!(
             "no values within the bounds meet all within their tolerances; the nearest leave one {} tolerances off",
             significant(best.largest(), 3)
@@ -65,7 +71,17 @@ pub fn said(found: &Found, parameters: &[ParameterRow], flat: &str) -> Said {
         let at = with_unit(&significant(row.value, 6), &row.parameter.unit);
         sentences.push(format!("`{}` is held at its bound, {at}", row.parameter.name));
     }
-    if !best.is_settled() {
+    if best.is_at_edge() {
+        is_warning = true;
+        let why = if refused.is_empty() { String::new() } else { format!(", which is refused: {refused}") };
+        sentences
+            .push(format!("the best lies at the edge of the valid values; the residuals would fall beyond it{why}"));
+    }
+    if best.fit.end == End::Stopped {
+        is_warning = true;
+        sentences
+            .push("its search was stopped there: whether values along the edge are nearer is not known".to_owned());
+    } else if !best.is_settled() {
         is_warning = true;
         sentences.push(format!("the best has not settled after {}", count(best.fit.steps, "step")));
     }

@@ -100,6 +100,70 @@ fn where_the_model_has_no_numbers_nothing_is_taken() {
     assert!(fitted(&[(0.0, 5.0)], &[4.0], &model).0.is_none());
 }
 
+/// The least sum of squares on a grid of the points at which the model has residuals.
+fn least_of_grid(bounds: [(f64, f64); 2], count: usize, model: &dyn Fn(&[f64]) -> Option<Vec<f64>>) -> f64 {
+    let value = |(low, high): (f64, f64), at: usize| low + (high - low) * at as f64 / count as f64;
+    let sums = (0..=count).flat_map(|one| (0..=count).map(move |two| (one, two)));
+    let sums = sums.filter_map(|(one, two)| model(&[value(bounds[0], one), value(bounds[1], two)]));
+    sums.map(|residuals| dot(&residuals, &residuals)).fold(f64::INFINITY, f64::min)
+}
+
+/// Tier: closed form; where the least is beyond a slanted edge, it is the foot of the perpendicular, from any start. Along the
+/// edge the sum of squares falls, which a search that only shortens its steps does not see.
+#[test]
+fn a_search_goes_along_the_edge_of_what_the_model_admits() {
+    // Least at (3, 2), beyond x + 2 y = 4; the foot of the perpendicular is (3, 2) − 0.6 (1, 2).
+    let model = |p: &[f64]| (p[0] + 2.0 * p[1] <= 4.0).then(|| vec![10.0 * (p[0] - 3.0), 10.0 * (p[1] - 2.0)]);
+    for start in [[0.0, 0.0], [4.0, -4.0], [-4.0, 4.0], [0.1, 1.95], [3.9, 0.0]] {
+        let (fit, asked) = fitted(&[(-5.0, 5.0), (-5.0, 5.0)], &start, &model);
+        let fit = fit.unwrap();
+        assert!(
+            (fit.point[0] - 2.4).abs() < 1e-5 && (fit.point[1] - 0.8).abs() < 1e-5,
+            "{:?} from {start:?}",
+            fit.point
+        );
+        assert!(fit.end == End::Settled && asked < 2000, "{:?} after {asked}", fit.end);
+        assert!(fit.beyond.is_some_and(|beyond| model(&beyond).is_none()), "{start:?}");
+        assert!((fit.sum_of_squares - 180.0).abs() < 1e-3, "{}", fit.sum_of_squares);
+    }
+}
+
+/// Tier: second method, a dense grid; edges that are bent, meet in a corner, or meet a bound.
+#[test]
+fn the_least_at_an_edge_is_that_of_a_dense_grid() {
+    let residuals = |p: &[f64]| vec![p[0] - 1.5, 2.0 * (p[1] - 1.2), 0.5 * p[0] * p[1]];
+    let disc = |p: &[f64]| (p[0] * p[0] + p[1] * p[1] <= 1.0).then(|| residuals(p));
+    let outside = |p: &[f64]| ((p[0] - 1.5) * (p[0] - 1.5) + (p[1] - 1.0) * (p[1] - 1.0) >= 0.5).then(|| residuals(p));
+    let corner = |p: &[f64]| (p[0] <= 0.5 && p[0] + p[1] <= 1.0).then(|| residuals(p));
+    let wedge = |p: &[f64]| (2.0 * p[0] + p[1] <= 1.0 && p[0] + 2.0 * p[1] <= 1.0).then(|| residuals(p));
+    let to_bound = |p: &[f64]| (p[0] + 3.0 * p[1] <= 1.0).then(|| vec![p[0] + 3.0, p[1] - 3.0]);
+    let bounds = [(-2.0, 2.0), (-2.0, 2.0)];
+    let models: [(&str, &dyn Fn(&[f64]) -> Option<Vec<f64>>); 5] =
+        [("disc", &disc), ("outside", &outside), ("corner", &corner), ("wedge", &wedge), ("bound", &to_bound)];
+    for (name, model) in models {
+        let least = least_of_grid(bounds, 800, model);
+        for start in [[0.0, 0.0], [-0.9, 0.1], [0.2, -0.9]] {
+            let fit = fitted(&bounds, &start, model).0.unwrap();
+            assert!(model(&fit.point).is_some());
+            // Around a hole there are two ways, of which one ends higher.
+            let is_least = name == "outside" || fit.sum_of_squares <= least + 1e-4;
+            assert!(is_least, "{name} from {start:?}: {} at {:?}, not {least}", fit.sum_of_squares, fit.point);
+            assert_eq!(fit.end, End::Settled, "{name} from {start:?} at {:?}", fit.point);
+        }
+    }
+}
+
+/// What cannot be shown to be least is not called so: a comb of slits has no edge with a normal.
+#[test]
+fn a_search_that_an_edge_ends_says_so() {
+    let comb = |p: &[f64]| {
+        let is_slit = libm::sin(3e5 * (p[0] - 0.3 * p[1])) > 0.9;
+        (p[0] < 0.5 && !(p[0] > 0.499 && is_slit)).then(|| vec![p[0] - 1.0, p[1] - 0.2 * p[0]])
+    };
+    let fit = fitted(&[(0.0, 2.0), (-1.0, 1.0)], &[0.1, 0.9], &comb).0.unwrap();
+    assert!(fit.point[0] <= 0.5 && (fit.end != End::Settled || fit.sum_of_squares < 0.2505), "{fit:?}");
+}
+
 /// Tier: invariant; a model with noise ends where no step can be told from it, soon, and near the least.
 #[test]
 fn noise_ends_a_search() {
