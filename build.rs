@@ -105,8 +105,11 @@ fn prefer_static_hdf5() -> io::Result<()> {
     let Ok(triplet) = Command::new("cc").arg("-print-multiarch").output() else { return Ok(()) };
     let system = Path::new("/usr/lib").join(String::from_utf8_lossy(&triplet.stdout).trim());
     let archive = system.join("hdf5/serial/libhdf5.a");
-    if ![archive.clone(), system.join("libz.so"), system.join("libsz.so")].iter().all(|file| file.exists()) {
-        return Ok(());
+    for file in [archive.clone(), system.join("libz.so"), system.join("libsz.so")] {
+        match fs::metadata(file) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+            found => found.map(drop)?,
+        }
     }
     // A folder with the archive alone, searched before the one with both.
     let folder = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR")).join("hdf5");
@@ -128,6 +131,7 @@ fn kind_of(path: &Path) -> Option<String> {
 }
 
 fn collect(folder: &Path, into: &mut Vec<PathBuf>) -> io::Result<()> {
+    #[allow(clippy::disallowed_methods, reason = "every error is returned")]
     let mut entries: Vec<_> = fs::read_dir(folder)?.collect::<Result<_, _>>()?;
     entries.sort_by_key(fs::DirEntry::path);
     for entry in entries {
@@ -136,7 +140,7 @@ fn collect(folder: &Path, into: &mut Vec<PathBuf>) -> io::Result<()> {
         if path.file_stem().is_some_and(|name| name == "tests") {
             continue;
         }
-        if path.is_dir() {
+        if entry.file_type()?.is_dir() {
             collect(&path, into)?;
         } else if path.extension().is_some_and(|extension| extension == "rs") {
             into.push(path);

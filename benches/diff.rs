@@ -71,7 +71,8 @@ fn diff(criterion: &mut Criterion) {
         publish(&new, &after);
         group.bench_function(format!("report {name}"), |bencher| {
             bencher.iter(|| {
-                let (old, new) = (Side::folder(&old, "old"), Side::folder(&new, "new"));
+                let side = |path, label: &str| Side::folder(path, label).expect("it can be read");
+                let (old, new) = (side(&old, "old"), side(&new, "new"));
                 let found = compare(&old, &new, &Options::default()).expect("both are results");
                 assert_eq!(found.studies[0].stages[0].tables[0].columns[0].beyond, rows / 10);
                 black_box(pretty::text(&found, 120))

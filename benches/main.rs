@@ -4,6 +4,8 @@
 //! come the tables of error against run time, and one table of everything against its target. With a name on the command
 //! line only the benches whose names contain it are measured, and no table follows.
 
+#![allow(clippy::disallowed_methods, reason = "a measurement that cannot read a file fails")]
+
 mod accuracy;
 mod article;
 mod designs;

@@ -240,21 +240,22 @@ impl Study {
 
     fn _table(&self, py: Python<'_>, name: &str) -> PyResult<Table> {
         let manifest = self.manifest(py)?;
-        let folder = self.places.folder(&self.study.name);
-        let all = || manifest.stages.iter().flat_map(|stage| &stage.tables);
-        let Some(record) = all().find(|record| record.name == name).cloned() else {
-            let help = suggest(name, all().map(|record| record.name.as_str()).collect::<Vec<_>>());
+        let all = || manifest.stages.iter().flat_map(|stage| stage.tables.iter().map(move |record| (stage, record)));
+        let found = all().find(|(_, record)| record.name == name);
+        let Some((stage, record)) = found.map(|(stage, record)| (stage.clone(), record.clone())) else {
+            let help = suggest(name, all().map(|(_, record)| record.name.as_str()).collect::<Vec<_>>());
             return Err(PyKeyError::new_err(format!("there is no table `{name}`; {help}")));
         };
-        let table =
-            stopping(py, move |_| folder.table(&record))?.map_err(|error| run_failed(py, &error.to_string()))?;
+        let (study, places) = self.own();
+        let table = stopping(py, move |_| embedded::table(&study.name, &places, &stage, &record))?;
+        let table = table.map_err(|problem| run_failed(py, &problem))?;
         Ok(Table::new(name, table))
     }
 
     /// The page that shows its results; None before it was run.
     #[getter]
-    fn report(&self) -> Option<PathBuf> {
-        Some(embedded::page(&self.places.folder(&self.study.name))).filter(|path| path.is_file())
+    fn report(&self, py: Python<'_>) -> PyResult<Option<PathBuf>> {
+        embedded::page(&self.places.folder(&self.study.name)).map_err(|problem| run_failed(py, &problem))
     }
 }
 

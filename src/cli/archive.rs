@@ -13,6 +13,7 @@ use super::progress::{self, out};
 use super::{Ending, json, rights};
 use crate::program::PROGRAM;
 use crate::stage::kinds::KINDS;
+use studygraph::presence;
 use studygraph::runner::graph::Graph;
 use studygraph::runner::standing::{self, standing_of};
 use studygraph::store::archive::metadata::{Author, Description, Step, metadata};
@@ -48,7 +49,8 @@ pub(super) fn archive(
         about.authors.iter().map(|text| rights::author(text)).collect::<Result<_, _>>().map_err(Ending::Usage)?;
     let folder = Folder::new(&places.results, &study.name).telling(progress::told);
     // So that nobody publishes while the files are read.
-    let _lock = folder.path().is_dir().then(|| folder.lock()).transpose().map_err(|error| usage(error.to_string()))?;
+    let is_there = presence::is_folder(folder.path()).map_err(|error| usage(presence::unread(folder.path())(error)))?;
+    let _lock = is_there.then(|| folder.lock()).transpose().map_err(|error| usage(error.to_string()))?;
     // Stamps are for those who look often; what goes out is read.
     let known = folder.known().map_err(|error| usage(error.to_string()))?.map(Known::without_stamps);
     let standing = standing_of(study, known.as_ref()).map_err(|error| usage(error.message))?;
@@ -97,20 +99,22 @@ pub(super) fn archive(
 /// zip.
 fn refuse_to_lose(output: &Path, study: &Study, places: &Places) -> Result<(), String> {
     let refused = |why: &str| Err(format!("{} is {why}; name another file with -o", output.display()));
-    let full = |path: &Path| fs::canonicalize(path).ok();
+    let full = |path: &Path| presence::real_path(path).map_err(presence::unread(path));
     let folder = output.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    if let (Some(folder), Some(results)) = (full(folder), full(&places.results))
+    if let (Some(folder), Some(results)) = (full(folder)?, full(&places.results)?)
         && folder.starts_with(&results)
     {
         return refused("inside the results");
     }
-    if full(output).is_some_and(|path| full(&study.path) == Some(path)) {
+    if let Some(path) = full(output)?
+        && full(&study.path)? == Some(path)
+    {
         return refused("the study itself");
     }
-    match fs::metadata(output) {
-        Err(_) => Ok(()),
-        Ok(facts) if facts.is_file() && (facts.len() == 0 || is_archive(output).unwrap_or(false)) => Ok(()),
-        Ok(_) => refused("there already and no archive"),
+    match presence::metadata(output).map_err(presence::unread(output))? {
+        None => Ok(()),
+        Some(facts) if facts.is_file() && (facts.len() == 0 || is_archive(output).unwrap_or(false)) => Ok(()),
+        Some(_) => refused("there already and no archive"),
     }
 }
 

@@ -177,7 +177,7 @@ pub enum Command {
         studies: Vec<PathBuf>,
         #[command(flatten)]
         changes: Changes,
-        /// Read every byte of results and cache; what is damaged, stale or missing ends with code 4.
+        /// Read every byte of results and cache; what is damaged, stale, of another run, or missing and not in the cache ends with code 4.
         #[arg(long)]
         check: bool,
         #[command(flatten)]

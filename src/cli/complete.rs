@@ -18,6 +18,7 @@ use super::{Ending, studies};
 use crate::program;
 use crate::stage::{self, kinds::KINDS};
 use studygraph::history::side::Side;
+use studygraph::presence;
 use studygraph::store::manifest::Manifest;
 use studygraph::store::results::Folder;
 use studygraph::study::{Node, Study, described, named};
@@ -127,7 +128,7 @@ fn study_files(so_far: &OsStr) -> Vec<CompletionCandidate> {
     let is_study = |path: &Path| path.extension().is_some_and(|end| end == "yaml" || end == "yml");
     let mut all = PathCompleter::file().filter(is_study).complete(so_far);
     let start = so_far.to_string_lossy();
-    let stems = studies::all();
+    let stems = studies::all().unwrap_or_default();
     let stems = stems.iter().filter_map(|path| path.file_stem()?.to_str());
     all.extend(stems.filter(|stem| stem.starts_with(&*start)).map(CompletionCandidate::new));
     all
@@ -185,7 +186,9 @@ impl Line {
     /// The first word that is a study.
     fn study(&self) -> Option<Study> {
         let files = self.words.iter().skip(1).filter_map(|word| studies::file(Path::new(word)).ok());
-        files.filter(|path| path.is_file()).find_map(|path| program::load(&path).ok())
+        // Nobody reads a message while a word is completed.
+        let is_file = |path: &PathBuf| presence::is_file(path).unwrap_or(false);
+        files.filter(is_file).find_map(|path| program::load(&path).ok())
     }
 
     fn manifest(&self) -> Option<(Folder, Manifest)> {
@@ -195,7 +198,7 @@ impl Line {
     }
 
     fn with_results(&self, _: &str) -> Vec<Offer> {
-        let names = Side::folder(&self.results(), "").studies().unwrap_or_default();
+        let names = Side::folder(&self.results(), "").and_then(|side| side.studies()).unwrap_or_default();
         names.into_iter().map(|name| Offer::of(name, "")).collect()
     }
 
@@ -278,7 +281,7 @@ impl Line {
     /// `stage.table.column=`, of all results.
     fn tolerances(&self, _: &str) -> Vec<Offer> {
         let results = self.results();
-        let names = Side::folder(&results, "").studies().unwrap_or_default();
+        let names = Side::folder(&results, "").and_then(|side| side.studies()).unwrap_or_default();
         let mut all = Vec::new();
         for manifest in names.iter().filter_map(|name| Folder::new(&results, name).manifest()) {
             for record in manifest.stages.iter().flat_map(|stage| &stage.tables) {

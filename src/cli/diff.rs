@@ -3,7 +3,6 @@
 //! Must not know: what is compared.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::arguments::{Differences, Places, Shown};
@@ -18,6 +17,7 @@ use studygraph::diff::model::{Comparison, Stale};
 use studygraph::diff::{html, markdown, pretty};
 use studygraph::history::git::Repository;
 use studygraph::history::side::Side;
+use studygraph::presence;
 use studygraph::runner::standing::{Condition, StageStanding, standing_of};
 use studygraph::store::cache::Cache;
 use studygraph::store::lock::Lock;
@@ -46,8 +46,7 @@ pub(super) fn diff(asked: &Differences, places: &Places, quiet: bool) -> Result<
         Some(before) => before,
         None => of_revision("HEAD", places, &repository).map_err(Ending::Usage)?,
     };
-    let cache = places.cache.exists().then(|| Cache::open(&places.cache)).transpose();
-    let cache = cache.map_err(|error| Ending::Usage(error.to_string()))?;
+    let cache = Cache::open_if_there(&places.cache).map_err(|error| Ending::Usage(error.to_string()))?;
     let ignored = |study: &str| {
         let (Ok(repository), Some(folder)) = (&repository, after.path()) else { return false };
         before.path().is_none() && repository.leaves_out(&folder.join(study).join(MANIFEST))
@@ -114,7 +113,8 @@ fn locks(sides: &[&Side]) -> Vec<Lock> {
     let folders = |side: &&Side| -> Vec<PathBuf> {
         let Some(path) = side.path() else { return Vec::new() };
         let studies = side.studies().unwrap_or_default();
-        studies.iter().filter_map(|study| path.join(study).canonicalize().ok()).collect()
+        // One that cannot be locked is compared without; its faults are reported then.
+        studies.iter().filter_map(|study| presence::real_path(&path.join(study)).ok()?).collect()
     };
     let all: BTreeSet<PathBuf> = sides.iter().flat_map(folders).collect();
     all.iter().filter_map(|path| Folder::at(path)?.lock().ok()).collect()
@@ -132,8 +132,9 @@ fn shown(comparison: &Comparison, format: Shown) -> Result<String, Ending> {
 }
 
 pub(super) fn working_tree(places: &Places) -> Result<Side, Ending> {
-    if places.results.is_dir() {
-        return Ok(Side::folder(&places.results, places.results.display().to_string()));
+    let results = &places.results;
+    if presence::is_folder(results).map_err(|error| Ending::Usage(presence::unread(results)(error)))? {
+        return Side::folder(results, results.display().to_string()).map_err(Ending::Usage);
     }
     let (path, help) = (places.results.display(), "`gearstudy run STUDY` makes one");
     Err(Ending::Usage(format!("there is no results folder `{path}`; {help}, `--results` names another")))
@@ -168,14 +169,19 @@ pub(super) fn side(
     repository: &Result<Repository, String>,
 ) -> Result<Option<Side>, String> {
     let path = Path::new(word);
-    if path.is_dir()
-        && (word.contains(['/', '\\', '.']) || Side::folder(path, "").studies().is_ok_and(|all| !all.is_empty()))
-    {
-        return Ok(Some(Side::folder(path, word)));
+    let mut unread = None;
+    if presence::is_folder(path).map_err(presence::unread(path))? {
+        let side = Side::folder(path, word)?;
+        match side.studies() {
+            _ if word.contains(['/', '\\', '.']) => return Ok(Some(side)),
+            Ok(all) if !all.is_empty() => return Ok(Some(side)),
+            Ok(_) => {}
+            Err(problem) => unread = Some(problem),
+        }
     }
     match repository {
         Ok(found) if found.commit(word).is_ok() => of_revision(word, places, repository).map(Some),
-        _ => Ok(None),
+        _ => unread.map_or(Ok(None), Err),
     }
 }
 
@@ -204,7 +210,7 @@ fn named(
     repository: &Result<Repository, String>,
 ) -> Result<String, String> {
     let name = study_name(word);
-    let mut known = Side::folder(&places.results, "").studies().unwrap_or_default();
+    let mut known = Side::folder(&places.results, "")?.studies()?;
     for side in sides {
         known.extend(side.studies()?);
     }
@@ -237,10 +243,11 @@ fn named(
 fn results_beside(word: &str) -> Vec<String> {
     let parent = Path::new(word).parent().unwrap_or(Path::new(""));
     let here = if parent.as_os_str().is_empty() { Path::new(".") } else { parent };
-    let entries = fs::read_dir(here).into_iter().flatten().flatten();
-    let with_results =
-        entries.filter(|entry| Side::folder(&entry.path(), "").studies().is_ok_and(|all| !all.is_empty()));
-    with_results.map(|entry| parent.join(entry.file_name()).to_string_lossy().into_owned()).collect()
+    // Only names to suggest: a folder that cannot be read has none.
+    let entries = presence::entries(here).unwrap_or_default().into_iter().map(|(path, _)| path);
+    let studies = |path: &PathBuf| Side::folder(path, "").and_then(|side| side.studies());
+    let with_results = entries.filter(|path| studies(path).is_ok_and(|all| !all.is_empty()));
+    with_results.filter_map(|path| Some(parent.join(path.file_name()?).to_string_lossy().into_owned())).collect()
 }
 
 /// The name in a study's file; other words are names.

@@ -14,13 +14,16 @@ use super::plan::plan_json;
 use super::{pages, run};
 use declare::error::Diagnostic;
 use studygraph::diff::compare::{self, compare};
-use studygraph::history::side::Side;
+use studygraph::history::side::{Side, published};
+use studygraph::presence;
 use studygraph::runner::execute::{self, RunError};
 use studygraph::runner::fault::Fault;
 use studygraph::runner::options::{Options, Wanted};
 use studygraph::store::cache::Cache;
+use studygraph::store::manifest::{StageRecord, TableRecord};
 use studygraph::store::results::Folder;
 use studygraph::study::Study;
+use studygraph::table::data::Table;
 
 /// Where results and computed tables lie.
 #[derive(Clone, Debug)]
@@ -69,10 +72,22 @@ pub fn wanted(name: &str) -> Result<Wanted, String> {
     run::wanted(name)
 }
 
-/// The page of a study's results.
-#[must_use]
-pub fn page(folder: &Folder) -> PathBuf {
-    pages::path(folder)
+/// The page of a study's results; none before it was run.
+///
+/// # Errors
+/// When it cannot be read.
+pub fn page(folder: &Folder) -> Result<Option<PathBuf>, String> {
+    let page = pages::path(folder);
+    let is_there = presence::is_file(&page).map_err(presence::unread(&page))?;
+    Ok(Some(page).filter(|_| is_there))
+}
+
+/// A table of the results of a study; from the cache where it is not there, or another run left its own.
+///
+/// # Errors
+/// When it is damaged, or nobody has it.
+pub fn table(study: &str, places: &Places, stage: &StageRecord, record: &TableRecord) -> Result<Table, String> {
+    published(&places.folder(study), stage, record, &|| Cache::open_if_there(&places.cache))
 }
 
 /// Runs a study and publishes its results; `tell` hears the events of `gearstudy run --format json`.
@@ -134,6 +149,6 @@ pub fn plan(study: &Study, places: &Places, options: &Options) -> Result<Value, 
 pub fn diff(before: &Folder, after: &Folder) -> Result<Value, String> {
     let side = |folder: &Folder| Side::folder(folder.path(), folder.path().display().to_string());
     let options = compare::Options { curves: Some(&curves), ..compare::Options::default() };
-    let comparison = compare(&side(before), &side(after), &options)?;
+    let comparison = compare(&side(before)?, &side(after)?, &options)?;
     serde_json::to_value(comparison).map_err(|error| format!("the comparison cannot be written: {error}"))
 }

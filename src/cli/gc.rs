@@ -12,12 +12,14 @@ use super::progress::{self, out};
 use super::{Ending, json};
 use studygraph::history::git::Repository;
 use studygraph::history::side::Side;
+use studygraph::presence;
 use studygraph::runner::reach::reached;
 use studygraph::store::cache::{Cache, Remove};
 
 pub(super) fn gc(places: &Places, asked: &Cleaning) -> Result<(), Ending> {
     let usage = |error: &dyn std::fmt::Display| Ending::Usage(error.to_string());
-    let mut sides = vec![Side::folder(&places.results, places.results.display().to_string())];
+    let results = Side::folder(&places.results, places.results.display().to_string());
+    let mut sides = vec![results.map_err(|error| usage(&error))?];
     for word in &asked.keep {
         let side = Repository::around(&places.results).and_then(|repository| {
             let commit = repository.commit(word)?;
@@ -27,7 +29,8 @@ pub(super) fn gc(places: &Places, asked: &Cleaning) -> Result<(), Ending> {
     }
     // Looked into, and let go before it is cleaned; where there is none, nothing is made.
     let mut keep = BTreeSet::new();
-    if places.cache.join("lock").is_file() {
+    let lock = places.cache.join("lock");
+    if presence::is_file(&lock).map_err(|error| usage(&presence::unread(&lock)(error)))? {
         let cache = Cache::open(&places.cache).map_err(|error| usage(&error))?;
         for side in &sides {
             // Results that cannot be read need nobody knows what.

@@ -2,15 +2,20 @@
 //!
 //! Must not know: how anything is drawn, where and when files are written.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::progress::plain;
 use crate::report;
 use crate::report::{comparison, text as as_text};
+use studygraph::history::side::published;
+use studygraph::store::cache::Cache;
 use studygraph::store::manifest::Manifest;
 use studygraph::store::results::{Drawn, FIGURES, Folder, MEASURED, PAGE, Tables};
 use studygraph::table::data::{Data, Table};
+
+/// Tables of a report that say what is found of the study.
+pub(super) const REPORTED: [&str; 3] = ["verdict_counts", "verdicts", "comparisons"];
 
 #[must_use]
 pub(super) fn path(folder: &Folder) -> PathBuf {
@@ -144,11 +149,17 @@ fn sentence(counts: &[Count], what: &str) -> String {
     }
 }
 
-/// The tables of a folder of results, for those who read it.
-pub(super) fn read<'a>(folder: &'a Folder, manifest: &'a Manifest) -> impl Fn(&str) -> Option<Arc<Table>> + 'a {
+/// The tables of a folder of results, for those who read it; from the cache where another run left its own there.
+pub(super) fn read<'a>(
+    folder: &'a Folder,
+    manifest: &'a Manifest,
+    cache: &'a Path,
+) -> impl Fn(&str) -> Option<Arc<Table>> + 'a {
     |name| {
-        let records = manifest.stages.iter().flat_map(|stage| &stage.tables);
-        records.filter(|record| record.name == name).find_map(|record| folder.table(record).ok().map(Arc::new))
+        let records = manifest.stages.iter().flat_map(|stage| stage.tables.iter().map(move |record| (stage, record)));
+        let mut named = records.filter(|(_, record)| record.name == name);
+        let open = || Cache::open_if_there(cache);
+        named.find_map(|(stage, record)| published(folder, stage, record, &open).ok().map(Arc::new))
     }
 }
 

@@ -13,19 +13,19 @@ use super::print::{Grid, Heading};
 use super::progress::{out, told};
 use super::show::table_value;
 use super::{Ending, json, studies};
-use crate::query::tables::Tables;
+use crate::query::tables::{List, Tables};
 use crate::query::{Answer, Kind, ask};
 use studygraph::history::git::Repository;
 use studygraph::store::cache::Cache;
 use studygraph::store::file::{self, Durability};
+use studygraph::store::manifest::TableRecord;
 use studygraph::store::parquet;
 use studygraph::table::data::{Cell, Data, Table};
 use studygraph::table::schema::{Column, Schema};
 
 pub(super) fn query(asked: &Question, places: &Places, quiet: bool) -> Result<(), Ending> {
     let target = asked.output.as_deref().map(|path| Target::of(path).map_err(Ending::Usage)).transpose()?;
-    let cache = places.cache.exists().then(|| Cache::open(&places.cache)).transpose();
-    let cache = cache.map_err(|error| Ending::Usage(error.to_string()))?;
+    let cache = Cache::open_if_there(&places.cache).map_err(|error| Ending::Usage(error.to_string()))?;
     let repository = Repository::around(&places.results);
     let open = |revision: Option<&str>| {
         let Some(word) = revision.or(asked.at.as_deref()) else {
@@ -65,9 +65,7 @@ pub(super) fn query(asked: &Question, places: &Places, quiet: bool) -> Result<()
 /// Every table and its columns with their units, since an answer has none.
 fn list(tables: &mut Tables<'_>) -> Result<String, String> {
     let mut text = String::new();
-    let (listed, unread) = tables.list()?;
-    unread.iter().for_each(|problem| told(problem));
-    for (name, record) in listed {
+    for (name, record) in all(tables)? {
         let rows = record.rows;
         text += &format!("{name}  {rows} {}\n", if rows == 1 { "row" } else { "rows" });
         for column in record.columns.iter() {
@@ -79,9 +77,16 @@ fn list(tables: &mut Tables<'_>) -> Result<String, String> {
 }
 
 fn listed(tables: &mut Tables<'_>) -> Result<Value, String> {
-    let (listed, unread) = tables.list()?;
-    unread.iter().for_each(|problem| told(problem));
-    Ok(listed.iter().map(|(name, record)| table_value(record, name)).collect())
+    Ok(all(tables)?.iter().map(|(name, record)| table_value(record, name)).collect())
+}
+
+/// All tables; of studies that cannot be read, a warning.
+fn all(tables: &mut Tables<'_>) -> Result<Vec<(String, TableRecord)>, String> {
+    let List { tables, problems } = tables.list()?;
+    for problem in problems {
+        told(&format!("warning: {problem}"));
+    }
+    Ok(tables)
 }
 
 fn grid(answer: &Answer) -> Grid<'_> {

@@ -14,8 +14,10 @@ use super::progress::{self, out};
 use super::show::{none_yet, tell_stale};
 use super::{Ending, json as shapes, studies};
 use crate::program::PROGRAM;
+use studygraph::history::side::{cached, published};
 use studygraph::runner::standing::standing_of;
-use studygraph::store::manifest::Manifest;
+use studygraph::store::cache::Cache;
+use studygraph::store::manifest::{Manifest, TableRecord};
 use studygraph::store::results::{Folder, Tables};
 use studygraph::study::Study;
 use studygraph::table::data::Table;
@@ -50,7 +52,7 @@ pub(super) fn report(
     let (mut values, mut problems) = (Vec::new(), Vec::new());
     for study in studies {
         let folder = Folder::new(&places.results, &study.name).telling(progress::told);
-        let said = if check { looked_at(study, &folder)? } else { drawn(study, &folder)? };
+        let said = if check { looked_at(study, &folder, places)? } else { drawn(study, &folder, places)? };
         let stale = if check {
             stale(study, &folder)?
         } else {
@@ -78,24 +80,39 @@ pub(super) fn report(
 }
 
 /// As the results have it.
-fn looked_at(study: &Study, folder: &Folder) -> Result<Said, Ending> {
+fn looked_at(study: &Study, folder: &Folder, places: &Places) -> Result<Said, Ending> {
     let look = || {
         let manifest = folder.read_manifest().map_err(|error| Ending::Usage(error.to_string()))?;
         let manifest = manifest.ok_or_else(|| none_yet(study, folder))?;
-        Said::of(&manifest, &pages::read(folder, &manifest)).map_err(Ending::Usage)
+        // Verdicts that nobody has are not the same as none.
+        let open = || Cache::open_if_there(&places.cache);
+        for stage in manifest.stages.iter().filter(|stage| stage.kind == "report") {
+            for record in stage.tables.iter().filter(|record| pages::REPORTED.contains(&record.table())) {
+                published(folder, stage, record, &open).map_err(Ending::Usage)?;
+            }
+        }
+        Said::of(&manifest, &pages::read(folder, &manifest, &places.cache)).map_err(Ending::Usage)
     };
     folder.settled(look)
 }
 
 /// The same, with page and figures drawn anew.
-fn drawn(study: &Study, folder: &Folder) -> Result<Said, Ending> {
+fn drawn(study: &Study, folder: &Folder, places: &Places) -> Result<Said, Ending> {
     let said = RefCell::new(None);
     let draw = |manifest: &Manifest, tables: Tables<'_>| {
         let drawn = pages::draw(manifest, tables)?;
         said.replace(Some(Said::of(manifest, tables)?));
         Ok(drawn)
     };
-    let published = folder.redraw(&draw, PROGRAM.about.code).map_err(|error| Ending::Usage(error.to_string()))?;
+    // Where it cannot be opened, only what it would have given is missing, and reported.
+    let cache = || Cache::open_if_there(&places.cache).ok().flatten();
+    let manifest = folder.read_manifest().map_err(|error| Ending::Usage(error.to_string()))?.unwrap_or_default();
+    let elsewhere = |record: &TableRecord| {
+        let stage = manifest.stages.iter().find(|stage| stage.tables.contains(record))?;
+        cached(cache().as_ref(), stage, record)
+    };
+    let published =
+        folder.redraw(&draw, PROGRAM.about.code, &elsewhere).map_err(|error| Ending::Usage(error.to_string()))?;
     if let Some(problem) = published.ok_or_else(|| none_yet(study, folder))?.undrawn {
         return Err(Ending::Usage(problem));
     }

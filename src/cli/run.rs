@@ -21,6 +21,7 @@ use super::{Ending, draw, json, studies};
 use crate::program::PROGRAM;
 use crate::stage::Want;
 use declare::error::Diagnostic;
+use studygraph::presence;
 use studygraph::runner::events::Observer;
 use studygraph::runner::execute::{self, RunError, Surroundings};
 use studygraph::runner::fault::Fault;
@@ -28,6 +29,7 @@ use studygraph::runner::limits::{Limits, MOST_ROWS};
 use studygraph::runner::note::{self, Where};
 use studygraph::runner::options::{Force, Options, Wanted};
 use studygraph::runner::outcome::Outcome;
+use studygraph::runner::ownership;
 use studygraph::runner::plan::{self, Plan};
 use studygraph::runner::recall::{self, Part};
 use studygraph::store::cache::Cache;
@@ -84,8 +86,8 @@ pub(super) fn wanted(name: &str) -> Result<Wanted, String> {
     }
 }
 
-/// A name on the command line that no stage has.
-fn unknown(diagnostic: &Diagnostic) -> Ending {
+/// What is wrong that has no place in a file: a name on the command line that no stage has, for one.
+pub(super) fn unknown(diagnostic: &Diagnostic) -> Ending {
     let help = diagnostic.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
     Ending::Usage(format!("{}{help}", diagnostic.message))
 }
@@ -238,7 +240,8 @@ fn run_stages(
     match &lines {
         Some(lines) => {
             let manifest = &published.manifest;
-            let counts = verdicts.unwrap_or_else(|| Counts::of(manifest, &pages::read(&folder, manifest)));
+            let counts =
+                verdicts.unwrap_or_else(|| Counts::of(manifest, &pages::read(&folder, manifest, &places.cache)));
             lines.finished(outcome.stages.len(), outcome.ran(), outcome.seconds, &folder, &counts);
         }
         None if how.quiet => {}
@@ -275,10 +278,18 @@ fn summed_up(study: &Study, outcome: &Outcome, folder: &Folder, verdicts: Option
     format!("{}: {work}{}; {}\n", study.name, verdicts.unwrap_or_default(), pages::path(folder).display())
 }
 
+/// # Errors
+/// When a run would replace the results of another study of the same name.
+pub(super) fn check_owner(study: &Study, places: &Places) -> Result<(), Ending> {
+    ownership::check(study, &Folder::new(&places.results, &study.name)).map_err(|error| unknown(&error))
+}
+
 /// A plan writes nothing: where there is no cache yet, an empty one elsewhere stands for it.
 pub(super) fn plan_of(study: &Study, places: &Places, options: &Options) -> Result<Plan, Ending> {
+    check_owner(study, places)?;
     let elsewhere;
-    let root = if places.cache.exists() {
+    // One that cannot be read is opened, which says why.
+    let root = if presence::exists(&places.cache).unwrap_or(true) {
         places.cache.as_path()
     } else {
         elsewhere = Scratch::new()?;

@@ -81,9 +81,13 @@ pub(super) fn planned(
     into: &Path,
     told: Told,
 ) -> Result<ShardPlan, Ending> {
+    run::check_owner(study, places)?;
     let options = run::options(selection, &run::How::default())?;
     // Only looked into: what is known already is not computed again.
-    let known = places.cache.is_dir().then(|| Cache::open(&places.cache).ok()).flatten();
+    let known = Cache::open_if_there(&places.cache).unwrap_or_else(|problem| {
+        progress::told(&format!("warning: {problem}"));
+        None
+    });
     let elsewhere = Scratch::new()?;
     let cache = known.unwrap_or_else(|| Cache::open_if_possible(elsewhere.path()));
     let (plan, was_there) = shard::plan(study, &cache, &options, count, into).map_err(ending)?;

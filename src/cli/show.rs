@@ -15,8 +15,10 @@ use crate::program::{examine, load_text};
 use crate::rexs;
 use crate::stage::{self, kinds::KINDS};
 use declare::error::{Faults, suggest};
+use studygraph::history::side::published;
 use studygraph::runner::rehearse::rehearse;
 use studygraph::runner::standing::standing;
+use studygraph::store::cache::Cache;
 use studygraph::store::manifest::{ColumnRecord, TableRecord};
 use studygraph::store::results::Folder;
 use studygraph::study::{LoadError, Refused, Study, describe, described, schema as schemas};
@@ -203,7 +205,7 @@ pub(super) fn table(
     quiet: bool,
 ) -> Result<(), Ending> {
     let folder = Folder::new(&places.results, &study.name);
-    out(&folder.settled(|| shown(study, &folder, name, conditions, columns, format))?);
+    out(&folder.settled(|| shown(study, places, &folder, name, conditions, columns, format))?);
     tell_stale(study, &folder, quiet);
     Ok(())
 }
@@ -220,6 +222,7 @@ pub(super) fn tell_stale(study: &Study, folder: &Folder, quiet: bool) {
 
 fn shown(
     study: &Study,
+    places: &Places,
     folder: &Folder,
     name: Option<&str>,
     conditions: &[String],
@@ -240,15 +243,16 @@ fn shown(
         };
         return Ok(records.iter().map(line).collect());
     };
-    let found = records.iter().find(|record| record.name == name);
-    let Some(record) = found else {
+    let all = || manifest.stages.iter().flat_map(|stage| stage.tables.iter().map(move |record| (stage, record)));
+    let Some((stage, record)) = all().find(|(_, record)| record.name == name) else {
         if let Some(said) = studies::only_on_demand(study, name) {
             return Err(Ending::Usage(said));
         }
         let known: Vec<&str> = records.iter().map(|record| record.name.as_str()).collect();
         return Err(Ending::Usage(format!("there is no table `{name}`; {}", suggest(name, known.iter().copied()))));
     };
-    let table: Table = folder.table(record).map_err(|error| Ending::Usage(error.to_string()))?;
+    let table: Table =
+        published(folder, stage, record, &|| Cache::open_if_there(&places.cache)).map_err(Ending::Usage)?;
     let names = conditions.iter().map(|condition| condition.split('=').next().unwrap_or_default().trim());
     let mut absent =
         names.chain(columns.iter().map(String::as_str)).filter(|name| table.schema().position(name).is_none());

@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::arguments::{Changes, Places};
-use super::progress::out;
+use super::progress::{self, out};
 use super::{Ending, json, studies};
 use crate::program;
 use declare::error::Diagnostic;
 use studygraph::runner::standing::{Condition, StageStanding, Standing, standing_of};
 use studygraph::store::cache::{Cache, Lookup};
 use studygraph::store::index;
-use studygraph::store::results::{FileState, Folder, Known};
+use studygraph::store::results::{FileState, Folder, Known, is_drawn};
 use studygraph::study::{self, Settings, Study};
 
 /// A study and where it stands.
@@ -23,8 +23,10 @@ struct Told {
     standing: Standing,
     /// What reading every file found.
     read: Option<Read>,
-    /// Stages that are up to date, but whose tables the cache does not have: a run computes them again.
+    /// Stages that are not stale, but whose tables the cache does not have: a run computes them again.
     uncached: usize,
+    /// Files that are not here and that the cache cannot give back.
+    lost: Vec<String>,
 }
 
 /// Files that were read.
@@ -46,7 +48,7 @@ enum Fault {
 }
 
 /// Says it of every study; one that cannot be read silences no other. `check`: every byte is read, of the cache too,
-/// and what is damaged, stale or missing ends with code 4.
+/// and what is damaged, stale, of another run or missing ends with code 4.
 pub(super) fn status(
     words: &[PathBuf],
     changes: &Changes,
@@ -57,10 +59,16 @@ pub(super) fn status(
     let settings = studies::settings(changes);
     let files = studies::named_or_all(words)?;
     // Only looked into: a missing one is not made.
-    let cache = places.cache.is_dir().then(|| Cache::open(&places.cache).ok()).flatten();
+    let (cache, unread) = match Cache::open_if_there(&places.cache) {
+        Ok(cache) => (cache, None),
+        Err(problem) => (None, Some(problem.to_string())),
+    };
+    if let Some(problem) = &unread {
+        progress::told(&format!("warning: {problem}"));
+    }
     let mut faults = Vec::new();
     let (mut all, mut values) = (Vec::new(), Vec::new());
-    let (mut damaged, mut line_ends, mut stale) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut damaged, mut line_ends, mut lost, mut stale) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for file in &files {
         match told(file, &settings, places, cache.as_ref(), check) {
             Ok(told) => {
@@ -71,11 +79,12 @@ pub(super) fn status(
                     out(&(text(&told) + &read_text(&told)));
                 }
                 let folder = Folder::new(&places.results, &told.study.name);
+                let path = |name: &String| folder.path().join(name).display().to_string();
                 if let Some(read) = &told.read {
-                    let path = |name: &String| folder.path().join(name).display().to_string();
                     damaged.extend(read.damaged.iter().filter(|name| !read.line_ends.contains(name)).map(path));
                     line_ends.extend(read.line_ends.iter().map(path));
                 }
+                lost.extend(told.lost.iter().filter(|_| check).map(path));
                 if check && !is_up_to_date(&told.standing) {
                     stale.push(told.study.name.clone());
                 }
@@ -107,6 +116,9 @@ pub(super) fn status(
         let again = "`gearstudy run` writes it anew, and `results/** -text` in .gitattributes keeps git from it";
         advice.push(format!("only its line ends differ (git's autocrlf); {again}:\n  {}", line_ends.join("\n  ")));
     }
+    if !lost.is_empty() {
+        advice.push(format!("missing; `gearstudy run` writes it anew:\n  {}", lost.join("\n  ")));
+    }
     let of_cache = cache.as_ref().filter(|_| check).map(|cache| cache.verify(true)).unwrap_or_default();
     if !of_cache.is_empty() {
         let named: Vec<String> = of_cache.iter().map(|(path, why)| format!("{}: {why}", path.display())).collect();
@@ -118,7 +130,10 @@ pub(super) fn status(
     let is_invalid = |fault: &Fault| matches!(fault, Fault::Study(error) if !error.is_of_no_file());
     let (invalid, number) = (faults.iter().any(is_invalid), faults.len());
     match faults.pop() {
-        None if advice.is_empty() => Ok(()),
+        None if advice.is_empty() => match unread.filter(|_| check) {
+            Some(problem) => Err(Ending::Usage(problem)),
+            None => Ok(()),
+        },
         None => Err(Ending::Differs(advice.join("\n"))),
         Some(Fault::Study(error)) if files.len() == 1 => Err(Ending::Invalid(Box::new(error))),
         Some(Fault::Other(problem)) if files.len() == 1 => Err(Ending::Usage(problem)),
@@ -144,10 +159,17 @@ fn told(file: &Path, settings: &Settings, places: &Places, cache: Option<&Cache>
         .map_err(|error| Fault::Other(format!("{}: {}", study.path.display(), error.message)))?;
     let kept = |stage: &&StageStanding| {
         let kept = |key| cache.is_some_and(|cache| matches!(cache.look_up(key), Lookup::Found(_)));
-        stage.state != Condition::UpToDate || stage.keys.iter().all(|key| kept(*key))
+        let is_stale = !matches!(stage.state, Condition::UpToDate | Condition::OtherRun(_));
+        is_stale || stage.keys.iter().all(|key| kept(*key))
     };
-    let uncached = standing.stages.iter().filter(|stage| !kept(stage)).count();
-    Ok(Told { study, standing, read, uncached })
+    let uncached: Vec<&StageStanding> = standing.stages.iter().filter(|stage| !kept(stage)).collect();
+    let mut lost: Vec<String> = uncached.iter().flat_map(|stage| &stage.absent).cloned().collect();
+    if standing.absent().is_empty() {
+        // Where tables are missing as well, as in a clone, the run that brings them makes page and HDF5 file.
+        lost.extend(standing.missing.iter().cloned());
+    }
+    let uncached = uncached.len();
+    Ok(Told { study, standing, read, uncached, lost })
 }
 
 fn standing_now(study: &Study, folder: &Folder, check: bool) -> Result<(Standing, Option<Read>), Diagnostic> {
@@ -172,7 +194,9 @@ fn standing_now(study: &Study, folder: &Folder, check: bool) -> Result<(Standing
 /// Whether something is not as a run leaves it.
 fn is_odd(standing: &Standing) -> bool {
     let damaged = standing.stages.iter().any(|stage| matches!(stage.state, Condition::Damaged(_)));
-    damaged || !standing.foreign.is_empty() || (!standing.report && standing.has_results)
+    let other_run = standing.stages.iter().any(|stage| matches!(stage.state, Condition::OtherRun(_)));
+    let is_as_written = standing.foreign.is_empty() && standing.other_run.is_empty() && standing.missing.is_empty();
+    damaged || other_run || !is_as_written || (!standing.report && standing.has_results)
 }
 
 /// A clone has neither all tables nor the page, and is up to date nevertheless.
@@ -181,7 +205,7 @@ fn is_up_to_date(standing: &Standing) -> bool {
 }
 
 fn value(told: &Told) -> Value {
-    let Told { study, standing, read, uncached } = told;
+    let Told { study, standing, read, uncached, .. } = told;
     let report = &standing.report;
     let of_stage = |stage: &StageStanding| {
         json!({
@@ -195,7 +219,7 @@ fn value(told: &Told) -> Value {
         "up_to_date": is_up_to_date(standing),
         "results": standing.has_results, "tables_here": tables_here, "stages_not_in_cache": uncached,
         "text_changed": standing.text_changed, "gone": standing.gone, "report_up_to_date": report, "stages": stages,
-        "foreign": standing.foreign,
+        "foreign": standing.foreign, "other_run": standing.other_run, "not_here": standing.missing,
     });
     if let Some(read) = read {
         value["damaged"] = json!(read.damaged);
@@ -228,8 +252,22 @@ fn text(told: &Told) -> String {
     let others: Vec<&StageStanding> =
         standing.stages.iter().filter(|stage| stage.state != Condition::UpToDate).collect();
     let mut parts = Vec::new();
-    if !others.is_empty() {
+    let is_of_other_run = |stage: &&StageStanding| matches!(stage.state, Condition::OtherRun(_));
+    let of_other_run = others.iter().filter(|stage| is_of_other_run(stage)).count();
+    if others.len() > of_other_run {
         parts.push(format!("{} of {} stages are not up to date", others.len(), standing.stages.len()));
+    }
+    let is_changed = !parts.is_empty() || standing.text_changed || !standing.foreign.is_empty();
+    let has_other_run = of_other_run > 0 || !standing.other_run.is_empty();
+    if has_other_run {
+        let files: Vec<String> = standing.other_run.iter().map(|file| format!("`{file}`")).collect();
+        let tables = match of_other_run {
+            0 => None,
+            1 => Some("those of 1 stage".to_owned()),
+            many => Some(format!("those of {many} stages")),
+        };
+        let named = tables.into_iter().chain(files).collect::<Vec<_>>().join(", ");
+        parts.push(format!("files of another run lie here ({named})"));
     }
     if !standing.gone.is_empty() {
         parts.push(format!("the results have stages that the study has not: {}", standing.gone.join(", ")));
@@ -252,29 +290,38 @@ fn text(told: &Told) -> String {
     if parts.is_empty() {
         return format!("{}: {}\n", study.name, up_to_date(standing, *uncached, next));
     }
-    let mut text = format!("{}: {}; {}\n", study.name, parts.join("; "), next("run"));
+    let again = if has_other_run && !is_changed { format!(" {}", again(standing, *uncached)) } else { String::new() };
+    let mut text = format!("{}: {}; {}{again}\n", study.name, parts.join("; "), next("run"));
     let width = others.iter().map(|stage| stage.name.chars().count()).max().unwrap_or(0);
+    let longest = others.iter().map(|stage| stage.state.word().len()).max().unwrap_or(0).max("missing".len());
     for stage in others {
-        text += &format!("  {:width$}  {:7}  {}\n", stage.name, stage.state.word(), stage.state.why());
+        text += &format!("  {:width$}  {:longest$}  {}\n", stage.name, stage.state.word(), stage.state.why());
     }
     text
 }
 
-/// Every stage is; what is not here, and what a run would do all the same.
-fn up_to_date(standing: &Standing, uncached: usize, next: impl Fn(&str) -> String) -> String {
-    let absent = standing.absent().len();
-    let again = match uncached {
+/// What a run does about files that are not here, or not its own.
+fn again(standing: &Standing, uncached: usize) -> String {
+    match uncached {
         0 => "takes them from the cache".to_owned(),
         some => format!("computes {some} of {} stages again", standing.stages.len()),
-    };
-    match (absent, standing.report, uncached) {
+    }
+}
+
+/// Every stage is; what is not here, and what a run would do all the same.
+fn up_to_date(standing: &Standing, uncached: usize, next: impl Fn(&str) -> String) -> String {
+    let absent: Vec<&str> = standing.absent().into_iter().chain(standing.missing.iter().map(String::as_str)).collect();
+    let again = again(standing, uncached);
+    // A page is drawn from what is here.
+    let needs_run = absent.iter().filter(|file| !is_drawn(file)).count() > 0;
+    match (if needs_run { absent.len() } else { 0 }, standing.report, uncached) {
         (0, false, _) => format!("the report is not that of the last run; {}", next("report")),
         (0, true, 0) => "up to date".to_owned(),
         (0, true, some) => {
             let all = standing.stages.len();
             format!("up to date; the cache does not have {some} of {all} stages, so a run computes them again")
         }
-        (1, ..) => format!("up to date, 1 table not here; {} {again}", next("run")),
-        (many, ..) => format!("up to date, {many} tables not here; {} {again}", next("run")),
+        (1, ..) => format!("up to date, 1 file not here ({}); {} {again}", absent[0], next("run")),
+        (many, ..) => format!("up to date, {many} files not here; {} {again}", next("run")),
     }
 }

@@ -6,33 +6,36 @@ use std::path::{Path, PathBuf};
 
 use super::Ending;
 use super::arguments::Changes;
+use super::run::unknown;
 use crate::program;
 use declare::error::nearest;
+use studygraph::presence;
+use studygraph::runner::ownership::check_beside;
+use studygraph::study::identity::{self, FOLDER, name_of};
 use studygraph::study::{Settings, Study, named};
 
-/// Where studies are looked for by name.
-const FOLDER: &str = "studies";
-
-/// The file that a word means: itself, or of a study of this name in the folder `studies`.
+/// The file that a word means: itself, or in the folder `studies` that of the study of this name, or the file of this name.
 ///
 /// # Errors
-/// When it is neither, but nearly a name.
+/// When it is none of them, but nearly a name; when two studies have this name; when files cannot be read.
 pub(super) fn file(word: &Path) -> Result<PathBuf, Ending> {
     let is_name = word.components().count() == 1 && word.extension().is_none();
-    if !is_name || word.symlink_metadata().is_ok() {
+    let unread = |problem: std::io::Error| Ending::Usage(presence::unread(word)(problem));
+    if !is_name || presence::link_metadata(word).map_err(unread)?.is_some() {
         return Ok(word.to_owned());
     }
     let name = word.to_string_lossy();
-    let all = all();
+    let all = all()?;
+    if let Some(found) = owner(&all, &name)? {
+        return Ok(found);
+    }
     let stem = |path: &PathBuf| path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    // The file is nearly always called as its study.
-    let named = |path: &&PathBuf| program::load(path).is_ok_and(|study| study.name == name);
-    if let Some(found) = all.iter().find(|path| stem(path) == name).or_else(|| all.iter().find(named)) {
+    if let Some(found) = all.iter().find(|path| stem(path) == name) {
         return Ok(found.clone());
     }
     // Often only the ending is missing.
     let here = word.with_extension("yaml");
-    if here.is_file() {
+    if presence::is_file(&here).map_err(unread)? {
         let here = here.display();
         return Err(Ending::Usage(format!(
             "`{name}` is neither a file nor a study in `{FOLDER}`; did you mean `{here}`?"
@@ -47,9 +50,23 @@ pub(super) fn file(word: &Path) -> Result<PathBuf, Ending> {
     }
 }
 
-/// The file of this name in the folder `studies`, where it is there.
+/// The one of these files whose study states this name; a study keeps its name in whatever file it lies.
+///
+/// # Errors
+/// When two do: their results would overwrite each other.
+fn owner(files: &[PathBuf], name: &str) -> Result<Option<PathBuf>, Ending> {
+    // A file that cannot be read has no name that is known; it can still be meant by its own.
+    let is_owner = |file: &&PathBuf| name_of(file).is_ok_and(|stated| stated.is_some_and(|stated| stated == name));
+    let mut owners = files.iter().filter(is_owner);
+    match (owners.next(), owners.next()) {
+        (Some(one), Some(other)) => Err(clash(one, other, name)),
+        (one, _) => Ok(one.cloned()),
+    }
+}
+
+/// The file in the folder `studies` whose study has this name.
 pub(super) fn called(name: &str) -> Option<PathBuf> {
-    Some(Path::new(FOLDER).join(name).with_extension("yaml")).filter(|path| path.is_file())
+    owner(&all().ok()?, name).ok()?
 }
 
 /// A file as a word of a command line that a reader can paste.
@@ -74,12 +91,12 @@ pub(super) fn only_on_demand(study: &Study, name: &str) -> Option<String> {
 /// The files of the studies that were named, or of all in the folder `studies`.
 ///
 /// # Errors
-/// As [`file`]; when there are none.
+/// As [`file`]; when there are none, or the folder cannot be read.
 pub(super) fn named_or_all(named: &[PathBuf]) -> Result<Vec<PathBuf>, Ending> {
     if !named.is_empty() {
         return named.iter().map(|word| file(word)).collect();
     }
-    let all = all();
+    let all = all()?;
     if all.is_empty() {
         return Err(Ending::Usage(format!("there are no studies in `{FOLDER}` here; name one")));
     }
@@ -89,13 +106,14 @@ pub(super) fn named_or_all(named: &[PathBuf]) -> Result<Vec<PathBuf>, Ending> {
 /// Reads every study before anything runs, so that a slip in the second one costs nothing.
 ///
 /// # Errors
-/// The first that is none; two of one name.
+/// The first that is none; two of one name, be it that only one of them is named here.
 pub(super) fn load_all(words: &[PathBuf], changes: &Changes) -> Result<Vec<Study>, Ending> {
     let settings = settings(changes);
     let mut studies: Vec<Study> = Vec::new();
     for word in words {
         let study = program::load_changed(&file(word)?, &settings).map_err(|error| Ending::Invalid(Box::new(error)))?;
         distinct(&studies, &study)?;
+        check_beside(&study).map_err(|error| unknown(&error))?;
         studies.push(study);
     }
     Ok(studies)
@@ -108,19 +126,23 @@ pub(super) fn settings(changes: &Changes) -> Settings {
 /// # Errors
 /// When another study has the same name: their results would overwrite each other.
 pub(super) fn distinct(others: &[Study], study: &Study) -> Result<(), Ending> {
-    let Some(other) = others.iter().find(|other| other.name == study.name) else { return Ok(()) };
-    let (a, b) = (other.path.display(), study.path.display());
-    Err(Ending::Usage(format!(
-        "{a} and {b} are both called `{}`; their results would overwrite each other",
-        study.name
-    )))
+    let other = others.iter().find(|other| other.name == study.name);
+    other.map_or(Ok(()), |other| Err(clash(&other.path, &study.path, &study.name)))
 }
 
-/// The files in the folder `studies`, sorted; what is not a file would be waited for.
-pub(super) fn all() -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(FOLDER).into_iter().flatten().flatten().map(|entry| entry.path());
-    let mut all: Vec<PathBuf> =
-        entries.filter(|path| path.extension().is_some_and(|word| word == "yaml") && path.is_file()).collect();
-    all.sort();
-    all
+fn clash(one: &Path, other: &Path, name: &str) -> Ending {
+    let (one, other) = (one.display(), other.display());
+    Ending::Usage(format!(
+        "{one} and {other} are both called `{name}`; their results would overwrite each other: change `study:` in one of \
+         them, or give the run another name with `--name`"
+    ))
+}
+
+/// The files in the folder `studies`, sorted.
+///
+/// # Errors
+/// When it cannot be read.
+pub(super) fn all() -> Result<Vec<PathBuf>, Ending> {
+    let folder = Path::new(FOLDER);
+    identity::files_in(folder).map_err(|problem| Ending::Usage(presence::unread(folder)(problem)))
 }

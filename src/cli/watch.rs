@@ -20,6 +20,7 @@ use super::serve::Server;
 use super::signals::stop_flag;
 use super::{Ending, draw, events, pages, show, studies};
 use crate::program::{self, examine};
+use studygraph::presence;
 use studygraph::store::file;
 use studygraph::store::results::Folder;
 
@@ -81,7 +82,7 @@ pub(super) fn watch(
 ) -> Result<(), Ending> {
     let file = studies::file(word)?;
     // A mistake in a study can be mended while it is watched; of a file that is not there, the name is the mistake.
-    if file.is_dir() || !file.exists() {
+    if !presence::metadata(&file).is_ok_and(|found| found.is_some_and(|found| !found.is_dir())) {
         program::load_changed(&file, &studies::settings(changes)).map_err(|error| Ending::Invalid(Box::new(error)))?;
     }
     let cannot = |error: notify::Error| Ending::Usage(format!("cannot watch {}: {error}", file.display()));
@@ -229,7 +230,7 @@ fn renew(
         Err(ending) => {
             progress::told(&ending.to_string());
             // What could be computed was published.
-            let folder = pages::path(&folder).is_file().then(|| folder.path().to_owned());
+            let folder = presence::is_file(&pages::path(&folder)).unwrap_or(false).then(|| folder.path().to_owned());
             board.show(ending.to_string(), folder);
         }
     }

@@ -27,6 +27,14 @@ pub struct Tables<'a> {
     sides: Vec<(Option<String>, Side)>,
 }
 
+/// The tables that there are.
+pub struct List {
+    /// Each in the words of a query, with its rows and columns.
+    pub tables: Vec<(String, TableRecord)>,
+    /// Why studies are missing from it.
+    pub problems: Vec<String>,
+}
+
 /// A study of a side: its name, its folder, and what was run.
 struct Study {
     name: String,
@@ -34,16 +42,24 @@ struct Study {
     manifest: Manifest,
 }
 
-/// The studies of a side: those whose manifests can be read, and the names of the others, each with the reason.
+/// The studies of a side. One that cannot be read keeps no other from being asked.
+#[derive(Default)]
 struct Studies {
-    read: Vec<Study>,
+    sound: Vec<Study>,
+    /// Names of the others, and why they cannot be read.
     unread: Vec<(String, String)>,
 }
 
 impl Studies {
-    /// The reasons for which some cannot be read, behind what was said of the others.
-    fn reasons(&self) -> String {
-        self.unread.iter().map(|(_, problem)| format!("; {problem}")).collect()
+    /// # Errors
+    /// When this study is there, but cannot be read.
+    fn check(&self, name: &str) -> Result<(), String> {
+        let problem = self.unread.iter().find(|(unread, _)| unread == name);
+        problem.map_or(Ok(()), |(_, problem)| Err(problem.clone()))
+    }
+
+    fn problems(&self) -> impl Iterator<Item = &str> {
+        self.unread.iter().map(|(_, problem)| problem.as_str())
     }
 }
 
@@ -76,22 +92,22 @@ impl<'a> Tables<'a> {
         }
     }
 
-    /// Every table, in the words of a query, with its rows and columns; and the reasons for which some studies could not be read.
+    /// Every table.
     ///
     /// # Errors
-    /// When no results can be read, or not those of the study that is meant.
-    pub fn list(&mut self) -> Result<(Vec<(String, TableRecord)>, Vec<String>), String> {
+    /// When the results cannot be read, or not those of the one study that is meant.
+    pub fn list(&mut self) -> Result<List, String> {
         let wanted = self.study;
         let side = self.side(None)?;
         let studies = studies(side)?;
         known_study(&studies, wanted, side)?;
-        let unread = studies.unread.into_iter().filter(|_| wanted.is_none()).map(|(_, problem)| problem).collect();
-        let wanted = studies.read.into_iter().filter(|study| wanted.is_none_or(|wanted| study.name == wanted));
+        let problems = studies.problems().filter(|_| wanted.is_none()).map(str::to_owned).collect();
+        let wanted = studies.sound.into_iter().filter(|study| wanted.is_none_or(|wanted| study.name == wanted));
         let tables = wanted.flat_map(|study| {
             let records = study.manifest.stages.into_iter().flat_map(|stage| stage.tables);
             records.map(move |record| (format!("{}.{}", study.name, record.name), record)).collect::<Vec<_>>()
         });
-        Ok((tables.collect(), unread))
+        Ok(List { tables: tables.collect(), problems })
     }
 
     /// What is to be done about a column that a table of this name does not have, if its study gives it where it is asked for.
@@ -132,22 +148,21 @@ fn table(
     if is_short {
         known_study(&studies, study, side)?;
     }
-    let only = match (&studies.read[..], &studies.unread[..]) {
+    let only = study.or(match (&studies.sound[..], &studies.unread[..]) {
         ([only], []) => Some(only.name.as_str()),
         _ => None,
-    };
-    let only = study.or(only);
-    let Some((of, stage, record)) = find(&studies.read, only, name) else {
-        let unread = parted(only, name).and_then(|(study, _)| studies.unread.iter().find(|(name, _)| name == study));
-        if let Some((_, problem)) = unread {
-            return Err(problem.clone());
+    });
+    let Some((of, stage, record)) = find(&studies.sound, only, name) else {
+        if let Some((of, _)) = parted(only, name) {
+            studies.check(of)?;
         }
         if let Some(said) = parted(only, name).and_then(|(study, table)| on_demand(study, table)) {
             return Err(said);
         }
-        let known = known(&studies.read, only, name.matches('.').count());
-        let help = suggest(name, known.iter().map(String::as_str));
-        return Err(format!("there is no table `{name}` in {}; {help}{}", side.label, studies.reasons()));
+        let known = known(&studies.sound, only, name.matches('.').count());
+        let help = std::iter::once(suggest(name, known.iter().map(String::as_str)));
+        let help = help.chain(studies.problems().map(str::to_owned)).collect::<Vec<_>>().join("; ");
+        return Err(format!("there is no table `{name}` in {}; {help}", side.label));
     };
     Ok(match side.table(&of.folder, stage, record, cache).0 {
         Got::Table(table) => Ok(*table),
@@ -158,35 +173,30 @@ fn table(
     })
 }
 
-/// # Errors
-/// When there is none that can be read.
 fn studies(side: &Side) -> Result<Studies, String> {
-    let mut studies = Studies { read: Vec::new(), unread: Vec::new() };
+    let mut studies = Studies::default();
     for folder in side.studies()? {
         match side.manifest(&folder) {
             Ok(Some(manifest)) => {
                 let name = if side.is_single() { manifest.study.clone() } else { folder.clone() };
-                studies.read.push(Study { name, folder, manifest });
+                studies.sound.push(Study { name, folder, manifest });
             }
             Ok(None) => {}
             Err(problem) => studies.unread.push((folder, problem)),
         }
     }
-    match (&studies.read[..], studies.unread.first()) {
-        ([], Some((_, problem))) => Err(problem.clone()),
-        ([], None) => Err(format!("there are no results in {}", side.label)),
-        _ => Ok(studies),
+    if !studies.sound.is_empty() {
+        return Ok(studies);
     }
+    let problems: Vec<&str> = studies.problems().collect();
+    Err(if problems.is_empty() { format!("there are no results in {}", side.label) } else { problems.join("; ") })
 }
 
 fn known_study(studies: &Studies, wanted: Option<&str>, side: &Side) -> Result<(), String> {
-    let Some(wanted) = wanted.filter(|wanted| studies.read.iter().all(|study| study.name != *wanted)) else {
-        return Ok(());
-    };
-    if let Some((_, problem)) = studies.unread.iter().find(|(name, _)| name == wanted) {
-        return Err(problem.clone());
-    }
-    let help = suggest(wanted, studies.read.iter().map(|study| study.name.as_str()));
+    let is_there = |wanted: &&str| studies.sound.iter().any(|study| study.name == **wanted);
+    let Some(wanted) = wanted.filter(|wanted| !is_there(wanted)) else { return Ok(()) };
+    studies.check(wanted)?;
+    let help = suggest(wanted, studies.sound.iter().map(|study| study.name.as_str()));
     Err(format!("there is no study `{wanted}` in {}; {help}", side.label))
 }
 

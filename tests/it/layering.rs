@@ -6,6 +6,7 @@
 mod dangerous;
 mod owners;
 mod source;
+mod swallowed;
 
 use owners::OWNERS;
 use std::collections::BTreeSet;
@@ -57,14 +58,15 @@ const CRATES: &[(&str, Layers)] = &[
             ("runner", &["study", "diff"]),
             ("diff", &["history", "page"]),
             ("history", &["store"]),
-            ("study", &["program"]),
+            ("study", &["presence", "program"]),
             ("program", &["about", "stage"]),
-            ("store", &["about", "git", "table", "threads", "warning"]),
+            ("store", &["about", "git", "presence", "table", "threads", "warning"]),
             ("stage", &["table", "warning"]),
             ("warning", &[]),
             ("about", &[]),
             ("git", &[]),
             ("page", &[]),
+            ("presence", &[]),
             ("table", &[]),
             ("threads", &[]),
         ],

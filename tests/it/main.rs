@@ -1,7 +1,6 @@
 //! All integration tests, in one binary: one link instead of a dozen.
 
-// A test may panic.
-#![allow(clippy::disallowed_methods)]
+#![allow(clippy::disallowed_methods, reason = "a test fails where it cannot read a file or start a thread")]
 #![allow(clippy::float_cmp, reason = "tests say where a value must be met exactly")]
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the numbers are the tests' own")]
 

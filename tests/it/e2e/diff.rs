@@ -344,7 +344,8 @@ fn another_program_with_the_same_values_is_one_line() {
     assert!(pretty.contains("  = code and demand changed in pair, values the same"), "{pretty}");
 
     // In a terminal of 80 columns no line is longer.
-    let (old, new) = (Side::folder(&desk.path("old"), "old"), Side::folder(&desk.path("results"), "new"));
+    let side = |name: &str, label: &str| Side::folder(&desk.path(name), label).unwrap();
+    let (old, new) = (side("old", "old"), side("results", "new"));
     let text = pretty::text(&compare(&old, &new, &Options::default()).unwrap(), 80);
     let longest = text.lines().map(|line| line.chars().count()).max().unwrap();
     assert!((60..=80).contains(&longest), "{longest}\n{text}");

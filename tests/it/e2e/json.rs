@@ -153,7 +153,8 @@ fn a_run_in_json_is_lines_of_events() {
     as_events(&wrong);
     assert_eq!((wrong.len(), wrong[0]["mistakes"].as_array().unwrap().len()), (1, 2), "{out}");
     assert!(error.contains("unknown field `z`"), "{error}");
-    fs::write(desk.path("fails.yaml"), text.replace("fraction: 1.0", "length: 60 mm")).unwrap();
+    let fails = text.replace("study: quick", "study: fails").replace("fraction: 1.0", "length: 60 mm");
+    fs::write(desk.path("fails.yaml"), fails).unwrap();
     let failed = lines(&desk.run(&["run", "fails.yaml", "--format", "json"], 3).0);
     as_events(&failed);
     let stage = failed.iter().find(|line| line["state"] == "failed").unwrap();

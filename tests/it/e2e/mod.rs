@@ -1,12 +1,14 @@
 //! The program as a user runs it: real commands on real studies in an empty folder.
 
 mod bad;
+mod checkout;
 mod completions;
 mod diff;
 mod disk;
 mod editor;
 mod ended;
 mod git;
+mod identity;
 mod json;
 mod limits;
 mod places;
@@ -17,6 +19,7 @@ mod status;
 mod stubborn;
 mod texts;
 mod trust;
+mod unread;
 mod watch;
 mod work;
 

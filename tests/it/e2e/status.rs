@@ -58,7 +58,7 @@ fn tables_that_git_does_not_keep_are_not_missing() {
     let kept = git(&desk, &["ls-files", "results/quick"]);
     let listed = desk.manifest("quick")["files"].as_array().unwrap().clone();
     let absent = listed.iter().filter(|file| !kept.contains(file["file"].as_str().unwrap())).count();
-    // Those that are not tables, HDF5, page and figures, are not of a stage.
+    // HDF5 file, page and figures are not of a stage.
     let others = listed.iter().filter(|file| !file["file"].as_str().unwrap().ends_with(".parquet")).count();
     let tables = absent - others;
     git(&desk, &["clone", "-q", ".", "clone"]);
@@ -69,7 +69,7 @@ fn tables_that_git_does_not_keep_are_not_missing() {
     };
     let next = "next: gearstudy run quick.yaml";
     let status = clone(&["status", "quick.yaml"]);
-    assert_eq!(status, format!("quick: up to date, {tables} tables not here; {next} computes 6 of 6 stages again\n"));
+    assert_eq!(status, format!("quick: up to date, {absent} files not here; {next} computes 6 of 6 stages again\n"));
     let value: Value = serde_json::from_str(&clone(&["status", "--json", "quick.yaml"])).unwrap();
     assert_eq!((&value[0]["up_to_date"], &value[0]["tables_here"]), (&true.into(), &false.into()));
     assert_eq!(value[0]["stages_not_in_cache"], 6);
@@ -79,10 +79,56 @@ fn tables_that_git_does_not_keep_are_not_missing() {
     assert_eq!(stages.iter().map(names).sum::<usize>(), tables);
     let cache = desk.path(".gearstudy/cache").display().to_string();
     let status = clone(&["--cache", &cache, "status", "quick.yaml"]);
-    assert_eq!(status, format!("quick: up to date, {tables} tables not here; {next} takes them from the cache\n"));
+    assert_eq!(status, format!("quick: up to date, {absent} files not here; {next} takes them from the cache\n"));
+    // Whoever checks has to have every file, or a cache that can give them back.
+    clone(&["--cache", &cache, "status", "--check", "quick.yaml"]);
+    let checked = desk.command(&["status", "--check", "quick.yaml"]).current_dir(desk.path("clone")).output().unwrap();
+    assert_eq!(checked.status.code(), Some(4));
+    assert!(String::from_utf8_lossy(&checked.stderr).contains("missing; `gearstudy run` writes it anew"));
+    // Verdicts that are not here are not the same as none.
+    let report = desk.command(&["report", "--check", "quick.yaml"]).current_dir(desk.path("clone")).output().unwrap();
+    assert_eq!(report.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&report.stderr).contains("is not here, and the cache does not have it"));
+    clone(&["--cache", &cache, "report", "--check", "quick.yaml"]);
     // It does.
     clone(&["--cache", &cache, "run", "--quiet", "quick.yaml"]);
     assert_eq!(clone(&["--cache", &cache, "status", "quick.yaml"]), "quick: up to date\n");
+}
+
+/// Whatever of the published files is not there, and no cache has it: `--check` ends with 4, and a run brings it back.
+#[test]
+fn a_file_that_is_gone_is_missing_unless_the_cache_has_it() {
+    let desk = Desk::with("quick.yaml");
+    desk.run(&["run", "--quiet", "quick.yaml"], 0);
+    let (results, cache, aside) = (desk.path("results/quick"), desk.path(".gearstudy"), desk.path("aside"));
+    let page = "the report is not that of the last run";
+    for (file, told) in [
+        ("quick.h5", "up to date, 1 file not here (quick.h5); next: gearstudy run quick.yaml"),
+        ("report.html", page),
+        ("figures/torque.svg", page),
+        ("files.json", page),
+    ] {
+        fs::remove_file(results.join(file)).unwrap();
+        let (out, _) = desk.run(&["status", "quick.yaml"], 0);
+        assert!(out.contains(told), "{file}: {out}");
+        let (_, error) = desk.run(&["status", "--check", "quick.yaml"], 4);
+        assert!(file == "files.json" || error.contains(&format!("results/quick/{file}")), "{error}");
+        desk.run(&["run", "--quiet", "quick.yaml"], 0);
+        assert_eq!(desk.run(&["status", "--check", "quick.yaml"], 0).0.lines().next(), Some("quick: up to date"));
+    }
+    fs::remove_file(results.join("ste.curve.parquet")).unwrap();
+    // `table` and `query` have it from the cache.
+    desk.run(&["status", "--check", "quick.yaml"], 0);
+    desk.run(&["table", "quick.yaml", "ste.curve"], 0);
+    fs::rename(&cache, &aside).unwrap();
+    let (out, error) = desk.run(&["status", "--check", "quick.yaml"], 4);
+    assert!(out.contains("1 file not here (ste.curve.parquet)"), "{out}");
+    assert!(error.contains("missing; `gearstudy run` writes it anew:\n  results/quick/ste.curve.parquet"), "{error}");
+    let value: Value = serde_json::from_str(&desk.run(&["status", "--check", "--json", "quick.yaml"], 4).0).unwrap();
+    assert_eq!((&value[0]["tables_here"], &value[0]["not_here"]), (&false.into(), &Value::Array(Vec::new())));
+    assert!(
+        desk.run(&["table", "quick.yaml", "ste.curve"], 1).1.contains("is not here, and the cache does not have it")
+    );
 }
 
 /// Studies by name, and one that is broken between others.

@@ -89,7 +89,7 @@ impl Shop {
 
     fn ask(&self, query: &str) -> Result<Answer, String> {
         let open = |revision: Option<&str>| match revision {
-            None => Ok(Side::folder(self.path(), "the shop")),
+            None => Side::folder(self.path(), "the shop"),
             Some(revision) => Err(format!("there is no revision `{revision}`")),
         };
         ask(query, &mut Tables::new(&open, &|_, _| None, Some("small"), None), Duration::from_mins(1))

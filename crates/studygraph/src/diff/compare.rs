@@ -8,7 +8,7 @@ use std::path::Path;
 use super::model::{Comparison, Damage, Difference, Flip, StageDiff, StudyDiff, TableDiff};
 use super::renamed::ManifestPair;
 use super::{curves, renamed, table, verdict, why};
-use crate::history::side::{Got, Side};
+use crate::history::side::{Got, Odd, Side};
 use crate::store::cache::Cache;
 use crate::store::manifest::{FORMAT, Manifest, StageRecord, TableRecord};
 use crate::table::schema::{Column, Type};
@@ -64,7 +64,9 @@ pub fn compare(before: &Side, after: &Side, options: &Options<'_>) -> Result<Com
             comparison.studies.push(unknown(&pair.name, &pair.unread));
             continue;
         }
-        comparison.damaged.extend(damaged(pair, before, after, options));
+        let (damaged, remarks) = damaged(pair, before, after, options);
+        comparison.damaged.extend(damaged);
+        comparison.remarks.extend(remarks);
         let study = match (&pair.before, &pair.after) {
             (Some(old), Some(new)) => {
                 let own = new.1.tolerances.iter().map(|(name, value)| Allowance::new(name, value));
@@ -111,8 +113,9 @@ fn replace(told: &mut Vec<Damage>, found: Vec<Damage>) {
     }
 }
 
-/// Files that are not what their manifests say, but for values of tables that will be compared.
-fn damaged(pair: &ManifestPair, before: &Side, after: &Side, options: &Options<'_>) -> Vec<Damage> {
+/// Files that are not what their manifests say, but for values of tables that will be compared; a remark on files that other
+/// runs left there.
+fn damaged(pair: &ManifestPair, before: &Side, after: &Side, options: &Options<'_>) -> (Vec<Damage>, Vec<String>) {
     let tables = |side: &Option<(String, Manifest)>| -> BTreeSet<(String, String)> {
         let manifest = side.iter().flat_map(|(_, manifest)| &manifest.stages);
         manifest.flat_map(|stage| &stage.tables).map(|table| (table.name.clone(), table.content.clone())).collect()
@@ -123,7 +126,7 @@ fn damaged(pair: &ManifestPair, before: &Side, after: &Side, options: &Options<'
         contents.entry(name).or_default().insert(content);
     }
     let compared = |table: &TableRecord| contents.get(&table.name).is_some_and(|contents| contents.len() > 1);
-    let mut found = Vec::new();
+    let (mut found, mut remarks) = (Vec::new(), Vec::new());
     for (side, held, other, there) in
         [(before, &pair.before, after, &pair.after), (after, &pair.after, before, &pair.before)]
     {
@@ -131,8 +134,17 @@ fn damaged(pair: &ManifestPair, before: &Side, after: &Side, options: &Options<'
         let mut tell = |file: String, problem: String| {
             found.push(Damage { at: side.label.clone(), study: pair.name.clone(), file, problem });
         };
-        for (file, problem) in side.damage(folder, manifest, &compared) {
+        let Odd { damaged, other_run } = side.damage(folder, manifest, &compared);
+        for (file, problem) in damaged {
             tell(file, problem);
+        }
+        if let [first, more @ ..] = &other_run[..] {
+            let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
+            remarks.push(format!(
+                "{}: {}: `{first}`{more} of another run, as `git checkout` leaves them; `gearstudy run` takes the right \
+                 ones from the cache",
+                pair.name, side.label
+            ));
         }
         // Git seldom keeps all; what the other side has of the same study should be here too.
         let (Some(path), Some((there, theirs))) = (side.path(), there) else { continue };
@@ -143,7 +155,7 @@ fn damaged(pair: &ManifestPair, before: &Side, after: &Side, options: &Options<'
             }
         }
     }
-    found
+    (found, remarks)
 }
 
 /// The manifest in a folder of a side, or the reason for which it cannot be read; the study's name first.

@@ -11,6 +11,7 @@ use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 use std::sync::{Mutex, PoisonError};
 
 use crate::git::{self, ask};
+use crate::presence;
 use declare::error::nearest;
 
 /// The repository that holds a folder.
@@ -51,7 +52,7 @@ impl Repository {
             return Ok(found);
         }
         let mut folder = path;
-        while !folder.is_dir() {
+        while !presence::is_folder(folder).map_err(presence::unread(folder))? {
             folder = folder.parent().unwrap_or(Path::new(""));
             if folder.as_os_str().is_empty() {
                 folder = Path::new(".");
@@ -80,7 +81,7 @@ impl Repository {
     fn around_link(path: &Path) -> Option<Self> {
         let path = std::path::absolute(path).ok()?;
         let (parent, name) = (path.parent()?, path.file_name()?);
-        if !path.symlink_metadata().ok()?.is_symlink() {
+        if !presence::link_metadata(&path).ok()??.is_symlink() {
             return None;
         }
         let found = Self::top(parent).ok()?;
@@ -104,7 +105,7 @@ impl Repository {
         }
         // What exists may lie behind symbolic links; the rest is taken by its name.
         let (mut existing, mut rest) = (absolute.as_path(), Vec::new());
-        while !existing.exists() {
+        while !presence::exists(existing).map_err(cannot)? {
             rest.extend(existing.file_name().map(OsStr::to_owned));
             existing = existing.parent().unwrap_or(Path::new("/"));
         }

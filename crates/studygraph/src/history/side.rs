@@ -2,19 +2,20 @@
 //!
 //! Must not know: what is done with them.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
 use super::git::{Commit, Files, Repository};
+use crate::presence;
 use crate::store::bundle::Opened;
 use crate::store::cache::Cache;
+use crate::store::error::StoreError;
 use crate::store::file;
-use crate::store::index;
+use crate::store::index::{self, Index};
 use crate::store::manifest::{AGAIN, FileRecord, Manifest, StageRecord, TableRecord};
 use crate::store::parquet;
-use crate::store::results::{Folder, Known, MANIFEST, held_text, here};
+use crate::store::results::{FileState, Folder, Known, MANIFEST, held_text, here};
 use crate::table::data::Table;
 use crate::threads;
 
@@ -47,16 +48,29 @@ enum Held {
     Absent,
     /// There, but git has its contents elsewhere: a phrase.
     Elsewhere(String),
+    /// Whole, and of another run than the manifest.
+    OtherRun,
     /// Not what the manifest says: a phrase that follows the file's name.
     Damaged(String),
 }
 
+/// Files of a manifest that are there and not its own.
+#[derive(Default)]
+pub struct Odd {
+    /// Each, and a phrase that follows its name.
+    pub damaged: Vec<(String, String)>,
+    /// Whole ones that another run wrote.
+    pub other_run: Vec<String>,
+}
+
 impl Side {
     /// The results in a folder: `<study>/manifest.json` in it, or `manifest.json` itself.
-    #[must_use]
-    pub fn folder(path: &Path, label: impl Into<String>) -> Self {
-        let single = path.join(MANIFEST).is_file();
-        Self { label: label.into(), source: Source::Folder(path.to_owned()), single, opened: Opened::default() }
+    ///
+    /// # Errors
+    /// When the system cannot say which of the two it is.
+    pub fn folder(path: &Path, label: impl Into<String>) -> Result<Self, String> {
+        let single = presence::is_file(&path.join(MANIFEST)).map_err(presence::unread(path))?;
+        Ok(Self { label: label.into(), source: Source::Folder(path.to_owned()), single, opened: Opened::default() })
     }
 
     /// The results that a commit holds in `folder`.
@@ -95,10 +109,11 @@ impl Side {
         }
     }
 
-    /// The folders with a manifest, sorted; one with an empty name for the results of a single study.
+    /// The folders with a manifest, sorted, and those that cannot be read, of which [`Side::manifest`] says so; one with an
+    /// empty name for the results of a single study.
     ///
     /// # Errors
-    /// When the folder cannot be read.
+    /// When the folder of all of them cannot be read.
     pub fn studies(&self) -> Result<Vec<String>, String> {
         if self.single {
             return Ok(vec![String::new()]);
@@ -109,13 +124,11 @@ impl Side {
                 manifests.filter_map(|path| Some(path.parent()?.to_string_lossy().into_owned())).collect::<Vec<_>>()
             }
             Source::Folder(folder) => {
-                let entries = match fs::read_dir(folder) {
-                    Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
-                    other => other.map_err(|error| format!("cannot read `{}`: {error}", folder.display()))?,
-                };
-                // Whatever it is: what is not a file is told when it is read.
-                let with_manifest = entries.flatten().filter(|entry| entry.path().join(MANIFEST).exists());
-                with_manifest.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect()
+                let entries = presence::entries(folder).map_err(presence::unread(folder))?;
+                let paths = entries.into_iter().map(|(path, _)| path);
+                // Reading it reports whatever is in the place of the manifest.
+                let with_manifest = paths.filter(|path| presence::exists(&path.join(MANIFEST)).unwrap_or(true));
+                with_manifest.filter_map(|path| Some(path.file_name()?.to_string_lossy().into_owned())).collect()
             }
         };
         names.sort();
@@ -153,6 +166,7 @@ impl Side {
                 Source::Folder(_) => (format!("is not there in {}", self.label), None),
             },
             Held::Elsewhere(why) => (format!("at {} {why}", self.label), None),
+            Held::OtherRun => (format!("is of another run in {}", self.label), None),
             Held::Damaged(problem) => (format!("at {} {problem}", self.label), Some(problem)),
         };
         (cached(cache, stage, record).map_or(Got::Without(why), |table| Got::Table(Box::new(table))), damage)
@@ -176,10 +190,20 @@ impl Side {
         let place = format!("{study}/{}", record.file);
         let read = || parquet::read(bytes);
         match self.opened.table(record, &place, read, |problem| problem) {
-            Err(problem) => Held::Damaged(format!("is damaged: {problem}")),
             Ok(table) if table.content_hash().to_string() == record.content => Held::Table(Box::new(table)),
+            _ if self.is_of_other_run(study, &record.file) => Held::OtherRun,
+            Err(problem) => Held::Damaged(format!("is damaged: {problem}")),
             Ok(_) => Held::Damaged("holds other values than its manifest says".to_owned()),
         }
+    }
+
+    /// Whether a file that is not what the manifest says is whole, as the index notes it.
+    fn is_of_other_run(&self, study: &str, file: &str) -> bool {
+        let Source::Folder(folder) = &self.source else { return false };
+        let noted = Index::read(&folder.join(study)).and_then(|(index, _)| index.find(file).cloned());
+        let Some(noted) = noted else { return false };
+        let read = self.read(&Path::new(study).join(file), file::MOST_TABLE);
+        read.is_ok_and(|bytes| bytes.is_some_and(|bytes| index::digest(&bytes) == noted.digest))
     }
 
     /// The files of a table that are not the lines it holds.
@@ -198,25 +222,20 @@ impl Side {
         record.files.iter().filter(here).filter_map(changed).collect()
     }
 
-    /// Whether this file is there, whatever is in it.
+    /// Whether this file is there, whatever is in it. One that cannot be read is: [`Side::damage`] reports it.
     #[must_use]
     pub fn has(&self, study: &str, file: &str) -> bool {
         let path = Path::new(study).join(file);
         match &self.source {
             Source::Commit(files) => files.has(&path),
-            Source::Folder(folder) => folder.join(path).symlink_metadata().is_ok(),
+            Source::Folder(folder) => presence::link_metadata(&folder.join(path)).map_or(true, |found| found.is_some()),
         }
     }
 
-    /// What is wrong with the files that a manifest lists, but for tables that are `read` anyway: each file, and a phrase
-    /// that follows its name. What is not there is for the caller to judge: git seldom keeps all.
+    /// What is wrong with the files that a manifest lists, but for tables that are `read` anyway. What is not there is for
+    /// the caller to judge: git seldom keeps all.
     #[must_use]
-    pub fn damage(
-        &self,
-        study: &str,
-        manifest: &Manifest,
-        read: &(dyn Fn(&TableRecord) -> bool + Sync),
-    ) -> Vec<(String, String)> {
+    pub fn damage(&self, study: &str, manifest: &Manifest, read: &(dyn Fn(&TableRecord) -> bool + Sync)) -> Odd {
         let tables: Vec<&TableRecord> = manifest.stages.iter().flat_map(|stage| &stage.tables).collect();
         let of_table = |record: &&TableRecord| match self.held(study, record) {
             Held::Damaged(problem) => vec![(record.file.clone(), problem)],
@@ -238,8 +257,11 @@ impl Side {
         });
         // What is wrong with a table's values says more than that its bytes are other ones.
         let told: Vec<String> = found.iter().map(|(file, _)| file.clone()).collect();
-        found.extend(others.into_iter().filter(|(file, _)| !told.contains(file)));
-        found
+        let others = others.into_iter().filter(|(file, _)| !told.contains(file));
+        let is_of_other_run = |file: &str| known.as_ref().is_some_and(|known| known.state(file) == FileState::OtherRun);
+        let (other_run, others): (Vec<_>, Vec<_>) = others.partition(|(file, _)| is_of_other_run(file));
+        found.extend(others);
+        Odd { damaged: found, other_run: other_run.into_iter().map(|(file, _)| file).collect() }
     }
 
     /// Why a listed file that is there is not the one that was written.
@@ -271,8 +293,36 @@ fn pointer(bytes: &[u8]) -> Option<&'static str> {
         .then_some("is a pointer of Git LFS: `git lfs pull` fetches it")
 }
 
+/// The table of a manifest in a folder, or from the cache where its file is not there or of another run.
+///
+/// # Errors
+/// A sentence: the file is damaged, or nobody has the table.
+pub fn published(
+    folder: &Folder,
+    stage: &StageRecord,
+    record: &TableRecord,
+    cache: &dyn Fn() -> Result<Option<Cache>, StoreError>,
+) -> Result<Table, String> {
+    let problem = match folder.table(record) {
+        Ok(table) => return Ok(table),
+        Err(problem) => problem,
+    };
+    let known = folder.known().map_err(|error| error.to_string())?;
+    let file = folder.path().join(&record.file);
+    let why = match known.map(|known| known.table_state(record)) {
+        Some(FileState::OtherRun) => "is of another run",
+        Some(FileState::Absent) => "is not here",
+        _ => return Err(problem.to_string()),
+    };
+    let cache = cache().map_err(|error| error.to_string())?;
+    cached(cache.as_ref(), stage, record).ok_or_else(|| {
+        format!("`{}` {why}, and the cache does not have it; `gearstudy run` computes it again", file.display())
+    })
+}
+
 /// The table as it was computed on this machine, chunk by chunk.
-fn cached(cache: Option<&Cache>, stage: &StageRecord, record: &TableRecord) -> Option<Table> {
+#[must_use]
+pub fn cached(cache: Option<&Cache>, stage: &StageRecord, record: &TableRecord) -> Option<Table> {
     let part = |key| cache?.table(key, record.table()).ok();
     let parts: Vec<Table> = stage.keys.iter().map(|record| part(record.key)).collect::<Option<_>>()?;
     let table = Table::concatenated(parts).ok()??;

@@ -18,6 +18,7 @@ use super::fault::Fault;
 use super::note;
 use super::options::Options;
 use super::outcome::Outcome;
+use super::ownership;
 use super::plan;
 use super::recall::{Part, Recalled};
 use super::work::{Ended, Run, message};
@@ -61,7 +62,7 @@ pub struct Surroundings<'a> {
 /// is in the manifest.
 ///
 /// # Errors
-/// As [`execute`] and [`Folder::publish`]. What could not be kept is published all the same, and told last of all.
+/// As [`execute`], [`ownership::check`] and [`Folder::publish`]. What could not be kept is published all the same, and told last of all.
 pub fn run(
     study: &Study,
     cache: &Cache,
@@ -76,6 +77,7 @@ pub fn run(
         let manifest = outcome.take_manifest(study);
         publishing(study, outcome, options, around, |facts, source| folder.publish(manifest, facts, source))
     };
+    ownership::check(study, folder)?;
     for message in &study.warnings().collect::<Vec<_>>() {
         observer.event(&Event::Warning { message });
     }
@@ -106,6 +108,7 @@ pub fn run_part(
     around: Surroundings<'_>,
 ) -> Result<Option<(Outcome, Published)>, RunError> {
     let Surroundings { cache, observer, stop, folder, .. } = around;
+    ownership::check_beside(&part.study)?;
     let mut outcome = execute(&part.study, cache, &part.options, observer, stop)?;
     let manifest = outcome.take_manifest(&part.study);
     let published = publishing(&part.study, &outcome, options, around, |facts, source| {
@@ -142,17 +145,19 @@ fn publishing<T>(
     study: &Study,
     outcome: &Outcome,
     options: &Options,
-    Surroundings { cache, observer, stop, draw, .. }: Surroundings<'_>,
+    Surroundings { cache, observer, stop, folder, draw }: Surroundings<'_>,
     publish: impl FnOnce(&dyn Fn() -> Facts, Source<'_>) -> Result<T, StoreError>,
 ) -> Result<T, StoreError> {
     let facts = || {
-        let folder = StudyFolder::of(&study.files()).unwrap_or_else(|problem| {
+        let study_folder = StudyFolder::of(&study.files()).unwrap_or_else(|problem| {
             let path = study.path.display();
             let message = &format!("the results do not name the commit of `{path}`, since git refuses: {problem}");
             observer.event(&Event::Warning { message });
             StudyFolder::default()
         });
-        Facts::collect(&study.program.about, folder, options.threads())
+        let mut facts = Facts::collect(&study.program.about, study_folder, options.threads());
+        facts.study_folder.file = ownership::recorded(&study.path, folder.path());
+        facts
     };
     // What a run that was stopped had finished is published; only whoever asks meanwhile gets less.
     let go_on = |file: &str| {

@@ -15,6 +15,7 @@ pub mod note;
 pub mod options;
 mod others;
 pub mod outcome;
+pub mod ownership;
 mod pieces;
 pub mod plan;
 pub mod reach;

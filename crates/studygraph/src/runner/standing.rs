@@ -31,6 +31,10 @@ pub struct Standing {
     pub foreign: Vec<String>,
     /// Of these, texts of which the line ends alone differ.
     pub line_ends: Vec<String>,
+    /// Those that another run wrote.
+    pub other_run: Vec<String>,
+    /// Those that are not here.
+    pub missing: Vec<String>,
     /// Whether page and figures are those of the last run.
     pub report: bool,
 }
@@ -39,10 +43,10 @@ pub struct Standing {
 pub struct StageStanding {
     pub name: String,
     pub state: Condition,
-    /// Of a stage that is up to date: files that the manifest lists and that are not here. A clone has only what git
+    /// Of a stage that is not stale: files that the manifest lists and that are not here. A clone has only what git
     /// keeps; a run brings them back.
     pub absent: Vec<String>,
-    /// Of a stage that is up to date: the keys under which a cache has its tables.
+    /// Of a stage that is not stale: the keys under which a cache has its tables.
     pub keys: Vec<Digest>,
 }
 
@@ -56,6 +60,8 @@ pub enum Condition {
     Missing(String),
     /// A file that is not as the manifest lists it.
     Damaged(String),
+    /// Files that another run wrote, under another manifest.
+    OtherRun(String),
     /// Only a run of these stages can tell.
     Waits(Vec<String>),
 }
@@ -68,6 +74,7 @@ impl Condition {
             Self::Stale(_) => "stale",
             Self::Missing(_) => "missing",
             Self::Damaged(_) => "damaged",
+            Self::OtherRun(_) => "other run",
             Self::Waits(_) => "waits",
         }
     }
@@ -77,7 +84,7 @@ impl Condition {
     pub fn why(&self) -> String {
         match self {
             Self::UpToDate => String::new(),
-            Self::Stale(why) | Self::Missing(why) | Self::Damaged(why) => why.clone(),
+            Self::Stale(why) | Self::Missing(why) | Self::Damaged(why) | Self::OtherRun(why) => why.clone(),
             Self::Waits(names) => format!("for {}", names.join(", ")),
         }
     }
@@ -90,6 +97,7 @@ impl Standing {
             && !self.text_changed
             && self.gone.is_empty()
             && self.foreign.is_empty()
+            && self.other_run.is_empty()
             && self.stages.iter().all(|stage| stage.state == Condition::UpToDate)
     }
 
@@ -103,7 +111,8 @@ impl Standing {
     #[must_use]
     pub fn problem(&self) -> Option<String> {
         let foreign = || self.foreign.first().map(|file| format!("`{file}` is not as the last run wrote it"));
-        self.first(|state| *state != Condition::UpToDate).or_else(foreign)
+        let other_run = || self.other_run.first().map(|file| format!("`{file}` is of another run"));
+        self.first(|state| *state != Condition::UpToDate).or_else(foreign).or_else(other_run)
     }
 
     /// The first thing by which the results are not those of the study and the program now, whatever became of the files: while a
@@ -177,7 +186,7 @@ pub fn standing_of(study: &Study, known: Option<&Known>) -> Result<Standing, Dia
                         keys = parts.iter().map(|part| part.key).collect();
                         let damaged;
                         (absent, damaged) = files(known, record);
-                        damaged.map_or(Condition::UpToDate, Condition::Damaged)
+                        damaged.unwrap_or(Condition::UpToDate)
                     }
                 }
             }
@@ -196,10 +205,13 @@ pub fn standing_of(study: &Study, known: Option<&Known>) -> Result<Standing, Dia
         .filter(|(_, file)| !of_tables.contains(file))
         .map(|(known, file)| (file.as_str(), known.state(file)))
         .collect();
-    let foreign: Vec<String> =
-        others.iter().filter(|(_, state)| *state == FileState::Changed).map(|(file, _)| (*file).to_owned()).collect();
     let is_alike = |file: &&String| known.is_some_and(|known| known.has_other_line_ends(file));
     let drawn = || others.iter().filter(|(file, _)| is_drawn(file));
+    let in_state = |states: &[FileState]| -> Vec<String> {
+        let files = others.iter().filter(|(_, state)| states.contains(state));
+        files.map(|(file, _)| (*file).to_owned()).collect()
+    };
+    let foreign = in_state(&[FileState::Changed, FileState::Unreadable]);
     Ok(Standing {
         stages,
         has_results: manifest.is_some(),
@@ -207,6 +219,8 @@ pub fn standing_of(study: &Study, known: Option<&Known>) -> Result<Standing, Dia
         gone: of_manifest.filter(|stage| !in_study(stage)).map(|stage| stage.name.clone()).collect(),
         line_ends: foreign.iter().filter(is_alike).cloned().collect(),
         foreign,
+        other_run: in_state(&[FileState::OtherRun]),
+        missing: in_state(&[FileState::Absent]),
         report: drawn().any(|(file, _)| *file == PAGE) && drawn().all(|(_, state)| *state == FileState::Intact),
     })
 }
@@ -253,9 +267,9 @@ fn stale(record: &StageRecord, kind: &str, now: &[&KeyRecord], axis: Option<&'st
     (record.keys.len() != now.len()).then(|| format!("config changed: fewer values of {}", axis.unwrap_or("an axis")))
 }
 
-/// The files of a stage's tables that are not here, and those that are, but not as they were written.
-fn files(known: &Known, record: &StageRecord) -> (Vec<String>, Option<String>) {
-    let (mut absent, mut odd) = (Vec::new(), Vec::new());
+/// The files of a stage's tables that are not here, and the worst of those that are, but not as they were written.
+fn files(known: &Known, record: &StageRecord) -> (Vec<String>, Option<Condition>) {
+    let (mut absent, mut odd, mut unread, mut other_run) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let of_table = |table: &TableRecord| {
         let held = table.files.iter().map(|file| (file.clone(), known.state(file)));
         [(table.file.clone(), known.table_state(table))].into_iter().chain(held).collect::<Vec<_>>()
@@ -264,13 +278,24 @@ fn files(known: &Known, record: &StageRecord) -> (Vec<String>, Option<String>) {
         match state {
             FileState::Intact => {}
             FileState::Absent => absent.push(file),
+            FileState::OtherRun => other_run.push(file),
+            FileState::Unreadable => unread.push(file),
             FileState::Changed | FileState::Unknown | FileState::Unlisted => odd.push(file),
         }
     }
-    let damaged = match &odd[..] {
+    let damaged = named(&odd, "is not as the manifest lists it", "are not as the manifest lists them")
+        .or_else(|| named(&unread, "cannot be read", "cannot be read"))
+        .map(Condition::Damaged);
+    let other_run = || named(&other_run, "is of another run", "are of another run").map(Condition::OtherRun);
+    (absent, damaged.or_else(other_run))
+}
+
+/// The first of some files, the number of the others, and what is wrong with one or with several; nothing where there are
+/// none.
+fn named(files: &[String], one: &str, several: &str) -> Option<String> {
+    match files {
         [] => None,
-        [one] => Some(format!("`{one}` is not as the manifest lists it")),
-        [first, ..] => Some(format!("`{first}` and {} more are not as the manifest lists them", odd.len() - 1)),
-    };
-    (absent, damaged)
+        [file] => Some(format!("`{file}` {one}")),
+        [first, ..] => Some(format!("`{first}` and {} more {several}", files.len() - 1)),
+    }
 }

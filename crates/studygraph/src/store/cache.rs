@@ -41,6 +41,7 @@ use super::error::StoreError;
 use super::file::{self, Durability};
 use super::journal::Journal;
 use super::{lock, parquet};
+use crate::presence;
 use crate::table::data::{Data, Table};
 use declare::digest::Digest;
 
@@ -112,6 +113,15 @@ impl Cache {
         };
         lock::hold(&lock, &path, true, WHILE_CLEANED)?;
         Ok(Self::new(root, Some(lock), Unkept::default()))
+    }
+
+    /// Opens the cache in `root` to look into it; none where there is none, and none is made.
+    ///
+    /// # Errors
+    /// When it cannot be read or locked.
+    pub fn open_if_there(root: &Path) -> Result<Option<Self>, StoreError> {
+        let is_there = presence::exists(root).map_err(StoreError::io("read", root))?;
+        is_there.then(|| Self::open(root)).transpose()
     }
 
     /// Opens the cache in `root`, or does without: then everything is kept in memory, and [`Cache::problems`] says why.

@@ -19,6 +19,8 @@ pub enum StoreError {
     NotDeterministic { table: String },
     #[error("table `{table}` cannot be stored: {problem}")]
     Format { table: String, problem: String },
+    #[error("`{path}` is of another run; `gearstudy run` writes that of this one")]
+    OtherRun { path: String },
     #[error("stopped before `{path}`")]
     Stopped { path: String },
     #[error("`{path}` is in use by {who}")]

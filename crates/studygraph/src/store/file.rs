@@ -10,6 +10,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::error::StoreError;
+use crate::presence;
 
 /// How temporary files begin; whatever is left of a killed run is told by it.
 pub const TEMPORARY: &str = ".partial-";
@@ -143,10 +144,10 @@ pub fn read(path: &Path, maximum: u64) -> io::Result<Vec<u8>> {
 
 /// Removes what killed runs left in a folder that nobody else writes to now.
 pub fn sweep(folder: &Path) {
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        if entry.file_name().to_string_lossy().starts_with(TEMPORARY) {
-            // A leftover that cannot be removed does no harm.
-            let _ = fs::remove_file(entry.path());
+    // A leftover that is not found or cannot be removed does no harm.
+    for (path, _) in presence::entries(folder).unwrap_or_default() {
+        if path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(TEMPORARY)) {
+            let _ = fs::remove_file(path);
         }
     }
 }

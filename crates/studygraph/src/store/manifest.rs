@@ -118,6 +118,10 @@ pub struct StudyFolder {
     pub commit: Option<String>,
     /// Whether the study differed from that commit: its file, or one that it names.
     pub uncommitted_changes: Option<bool>,
+    /// The study's file, relative to the folder of the manifest, with `/`; none where the text was in no file, and in
+    /// manifests of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
 }
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]

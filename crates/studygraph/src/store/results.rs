@@ -16,6 +16,7 @@ mod splice;
 #[cfg(test)]
 mod tests;
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -23,15 +24,16 @@ pub use changes::Changes;
 pub use known::{FileState, Known};
 #[cfg(feature = "hdf5")]
 pub use publish::hdf5_bytes;
-pub use publish::{Bytes, Draw, Drawn, Pieces, Published, Source, Tables};
+pub use publish::{Bytes, Draw, Drawn, Elsewhere, Pieces, Published, Source, Tables};
 pub use splice::{Part, Spliced};
 
 use super::bundle::{Opened, is_bundle};
 use super::error::StoreError;
 use super::file;
 use super::lock::{self, Lock, Told};
-use super::manifest::{AGAIN, Manifest, TableRecord};
+use super::manifest::{AGAIN, Manifest, StudyFolder, TableRecord};
 use super::parquet;
+use crate::presence;
 use crate::table::data::{Data, Table};
 
 pub const MANIFEST: &str = "manifest.json";
@@ -86,6 +88,28 @@ impl Folder {
     #[must_use]
     pub fn manifest(&self) -> Option<Manifest> {
         self.read_manifest().ok().flatten()
+    }
+
+    /// The file of the study whose results these are, as the manifest records it; none where it does not, or is damaged.
+    ///
+    /// # Errors
+    /// When the manifest cannot be read.
+    pub fn study_file(&self) -> Result<Option<PathBuf>, StoreError> {
+        /// All else in the manifest is passed over.
+        #[derive(serde::Deserialize)]
+        struct Recorded {
+            #[serde(default)]
+            study_folder: StudyFolder,
+        }
+        let path = self.path.join(MANIFEST);
+        let bytes = match file::read(&path, file::MOST_MANIFEST) {
+            Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::InvalidData) => return Ok(None),
+            other => other.map_err(StoreError::io("read", &path))?,
+        };
+        let Ok(Recorded { study_folder }) = serde_json::from_slice(&bytes) else { return Ok(None) };
+        let Some(file) = study_folder.file else { return Ok(None) };
+        let folder = std::path::absolute(&self.path).map_err(StoreError::io("find", &self.path))?;
+        Ok(Some(presence::without_dots(&folder.join(file))))
     }
 
     /// The manifest of the last run; none when there is none.
@@ -163,7 +187,7 @@ impl Folder {
     /// Those of `look`.
     pub fn settled<T, E>(&self, look: impl Fn() -> Result<T, E>) -> Result<T, E> {
         look().or_else(|fault| {
-            if !self.path.is_dir() {
+            if !presence::is_folder(&self.path).unwrap_or(false) {
                 return Err(fault);
             }
             // Where the folder cannot be locked, a second look is all that can be had.

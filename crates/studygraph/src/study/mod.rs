@@ -18,6 +18,7 @@ pub mod describe;
 pub mod described;
 mod document;
 mod files;
+pub mod identity;
 mod intervals;
 mod links;
 pub mod named;

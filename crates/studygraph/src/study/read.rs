@@ -6,6 +6,7 @@ use std::path::Path;
 
 use super::LoadError;
 use super::place::place_at;
+use crate::presence;
 use declare::error::{Diagnostic, Place, nearest};
 
 /// What is said of a file that is not there.
@@ -20,7 +21,7 @@ pub const LARGEST: u64 = 1 << 20;
 /// When it cannot be read, is not a file, is too large or is not UTF-8.
 pub fn read(path: &Path) -> Result<String, LoadError> {
     let refused = |diagnostic: Diagnostic| LoadError::new(path, String::new(), diagnostic);
-    if path.is_dir() {
+    if presence::is_folder(path).map_err(|error| refused(unreadable(path, &error)))? {
         return Err(refused(Diagnostic::new("this is a directory; a study is one YAML file").help(in_folder(path))));
     }
     let bytes = bytes(path).map_err(|error| refused(unreadable(path, &error)))?;
@@ -38,16 +39,17 @@ pub fn read(path: &Path) -> Result<String, LoadError> {
 pub fn beside(path: &Path, shown: &str, (text, place, study): (&str, Place, &Path)) -> Result<String, LoadError> {
     let refused = |found: Diagnostic| LoadError::new(study, text.to_owned(), found.at(place));
     // What is no file, a pipe for one, might be waited for.
-    if path.exists() && !path.is_file() {
+    let cannot = |error: io::Error| refused(Diagnostic::new(format!("`{shown}` cannot be read: {error}")));
+    if presence::metadata(path).map_err(cannot)?.is_some_and(|found| !found.is_file()) {
         return Err(refused(Diagnostic::new(format!("`{shown}` is not a file"))));
     }
     let bytes = bytes(path).map_err(|error| {
         if error.kind() != io::ErrorKind::NotFound {
-            return refused(Diagnostic::new(format!("`{shown}` cannot be read: {error}")));
+            return cannot(error);
         }
         let found = Diagnostic::new(format!("there is no file `{shown}`"));
         let wanted = path.file_name().unwrap_or_default().to_string_lossy();
-        let others = names(folder_of(path), &["csv", "CSV"]);
+        let others = names(folder_of(path), &["csv", "CSV"]).unwrap_or_default();
         refused(match nearest(&wanted, others.iter().map(String::as_str)) {
             Some(near) => {
                 let near = Path::new(shown).with_file_name(near).display().to_string();
@@ -77,7 +79,7 @@ fn unreadable(path: &Path, error: &io::Error) -> Diagnostic {
     let missing = Diagnostic::new(NOT_THERE);
     let folder = folder_of(path);
     let wanted = path.file_name().unwrap_or_default().to_string_lossy();
-    let found = studies(folder);
+    let found = studies(folder).unwrap_or_default();
     match nearest(&wanted, found.iter().map(String::as_str)) {
         Some(near) => missing.help(format!("did you mean `{}`?", path.with_file_name(near).display())),
         None => missing,
@@ -85,9 +87,10 @@ fn unreadable(path: &Path, error: &io::Error) -> Diagnostic {
 }
 
 fn in_folder(folder: &Path) -> String {
-    match studies(folder).first() {
-        Some(first) => format!("name a file in it, for example `{}`", folder.join(first).display()),
-        None => "there is no YAML file in it".to_owned(),
+    match studies(folder).as_deref() {
+        Ok([first, ..]) => format!("name a file in it, for example `{}`", folder.join(first).display()),
+        Ok([]) => "there is no YAML file in it".to_owned(),
+        Err(error) => format!("it cannot be read: {error}"),
     }
 }
 
@@ -96,19 +99,15 @@ fn folder_of(path: &Path) -> &Path {
 }
 
 /// Names of the YAML files in a folder, sorted.
-fn studies(folder: &Path) -> Vec<String> {
+fn studies(folder: &Path) -> io::Result<Vec<String>> {
     names(folder, &["yaml", "yml"])
 }
 
 /// Names of the files in a folder that end so, sorted.
-fn names(folder: &Path, endings: &[&str]) -> Vec<String> {
-    let entries = folder.read_dir().into_iter().flatten().flatten();
-    let mut names: Vec<_> = entries
-        .filter(|entry| entry.path().extension().is_some_and(|own| endings.iter().any(|ending| own == *ending)))
-        .map(|entry| entry.file_name().to_string_lossy().into_owned())
-        .collect();
-    names.sort();
-    names
+fn names(folder: &Path, endings: &[&str]) -> io::Result<Vec<String>> {
+    let entries = presence::entries(folder)?.into_iter().map(|(path, _)| path);
+    let wanted = entries.filter(|path| path.extension().is_some_and(|own| endings.iter().any(|ending| own == *ending)));
+    Ok(wanted.filter_map(|path| Some(path.file_name()?.to_string_lossy().into_owned())).collect())
 }
 
 fn not_utf8(path: &Path, bytes: &[u8], valid: usize) -> LoadError {

@@ -44,7 +44,8 @@ pub fn state(folder: &Path, plan: &ShardPlan, index: usize, check: bool) -> Stat
         },
         Ok(None) => match file::read(&failed_file(folder, index), LONGEST_MESSAGE) {
             Ok(message) => State::Failed(String::from_utf8_lossy(&message).into_owned()),
-            Err(_) => State::Missing,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => State::Missing,
+            Err(error) => State::Damaged(format!("why it failed cannot be read: {error}")),
         },
         Err(problem) => State::Damaged(problem),
     }

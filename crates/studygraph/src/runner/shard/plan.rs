@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{CHEAP, ShardError, known_file, plan_file};
 use crate::about::About;
+use crate::presence;
 use crate::program::Program;
 use crate::runner::board::{Board, StageState};
 use crate::runner::events::Silent;
@@ -107,7 +108,7 @@ pub fn plan(
                 there.study
             )));
         }
-        Err(_) if !plan_file(folder).exists() => {}
+        Err(_) if !presence::exists(&plan_file(folder)).map_err(StoreError::io("read", &plan_file(folder)))? => {}
         Err(error) => return Err(error),
     }
     let (mut plan, known) = made;

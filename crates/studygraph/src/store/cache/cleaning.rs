@@ -11,6 +11,7 @@ use std::time::{Duration, SystemTime};
 
 use super::packs::{self, FOLDER, Packs};
 use super::{Cache, NOTES};
+use crate::presence;
 use crate::store::error::StoreError;
 use crate::store::file::{self, TEMPORARY};
 use crate::store::journal::Journal;
@@ -220,10 +221,14 @@ fn there<T>(result: io::Result<T>) -> io::Result<Option<T>> {
 fn journals(root: &Path) -> Result<BTreeMap<Digest, SystemTime>, StoreError> {
     let mut keys = BTreeMap::new();
     for (path, _) in list(&root.join("journals"))? {
-        // What is not a journal names nothing.
-        let bytes = file::read(&path, file::MOST_MANIFEST).unwrap_or_default();
+        let bytes = match file::read(&path, file::MOST_MANIFEST) {
+            // What is not a journal names nothing.
+            Err(error) if error.kind() == ErrorKind::InvalidData => continue,
+            read => there(read).map_err(StoreError::io("read", &path))?.unwrap_or_default(),
+        };
         let journal = Journal::parse(bytes).unwrap_or_default();
-        let used = fs::metadata(&path).and_then(|found| found.modified()).unwrap_or(SystemTime::UNIX_EPOCH);
+        let found = presence::metadata(&path).map_err(StoreError::io("read", &path))?;
+        let used = found.and_then(|found| found.modified().ok()).unwrap_or(SystemTime::UNIX_EPOCH);
         for stage in journal.stages() {
             for key in stage.keys.iter().map(|record| record.key).chain(stage.whole) {
                 let known = keys.entry(key).or_insert(used);
@@ -286,10 +291,5 @@ fn name(path: &Path) -> String {
 
 /// What is in a folder, sorted; nothing where there is no folder.
 fn list(folder: &Path) -> Result<Vec<(PathBuf, fs::FileType)>, StoreError> {
-    let read = || -> io::Result<Vec<_>> {
-        fs::read_dir(folder)?.map(|entry| entry.and_then(|entry| Ok((entry.path(), entry.file_type()?)))).collect()
-    };
-    let mut paths = there(read()).map_err(StoreError::io("read", folder))?.unwrap_or_default();
-    paths.sort_by(|(a, _), (b, _)| a.cmp(b));
-    Ok(paths)
+    presence::entries(folder).map_err(StoreError::io("read", folder))
 }

@@ -13,6 +13,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use super::pack::{Ending, MAGIC, Pack, Place, Said, Small};
+use crate::presence;
 use crate::store::entry::CacheEntry;
 use crate::store::error::StoreError;
 use crate::store::file;
@@ -343,7 +344,7 @@ impl Packs {
 impl State {
     fn add(&mut self, path: PathBuf) {
         // What cannot be opened, or is no file, holds nothing.
-        if !path.metadata().is_ok_and(|metadata| metadata.is_file()) {
+        if !presence::is_file(&path).unwrap_or(false) {
             return;
         }
         let Ok(mut file) = File::open(&path) else { return };
@@ -369,15 +370,8 @@ impl State {
 /// # Errors
 /// When the folder cannot be read; none is one without packs.
 pub(super) fn numbered(folder: &Path) -> io::Result<Vec<(u64, PathBuf)>> {
-    let mut packs = Vec::new();
-    let entries = match fs::read_dir(folder) {
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(packs),
-        entries => entries?,
-    };
-    for entry in entries {
-        let path = entry?.path();
-        packs.extend(number(&path).map(|number| (number, path)));
-    }
+    let entries = presence::entries(folder)?.into_iter().map(|(path, _)| path);
+    let mut packs: Vec<(u64, PathBuf)> = entries.filter_map(|path| Some((number(&path)?, path))).collect();
     packs.sort();
     Ok(packs)
 }

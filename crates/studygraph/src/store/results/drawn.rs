@@ -7,22 +7,33 @@ use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::sync::Arc;
 
-use super::publish::{Draw, Drawn, Listed, Source, is_absent, worse};
-use super::{Changes, FIGURES, Folder, Known, MEASURED, PAGE, here, is_drawn};
+use super::publish::{Draw, Drawn, Elsewhere, Listed, Published, Source, is_absent, worse};
+use super::{Changes, FIGURES, FileState, Folder, Known, MEASURED, PAGE, here, is_drawn};
+use crate::presence;
 use crate::store::bundle::is_bundle;
 use crate::store::error::StoreError;
+use crate::store::facts::Facts;
 use crate::store::file;
 use crate::store::manifest::{Manifest, TableRecord, own_file};
 
 impl Folder {
-    pub(super) fn drawings(&self, manifest: &Manifest, draw: Draw<'_>) -> Result<Vec<Drawn>, String> {
+    /// Page and figures of a manifest; `elsewhere` may have tables that are not here.
+    pub(super) fn drawings(
+        &self,
+        manifest: &Manifest,
+        draw: Draw<'_>,
+        elsewhere: Elsewhere<'_>,
+    ) -> Result<Vec<Drawn>, String> {
         let fault = RefCell::new(None);
         let records: HashMap<&str, &TableRecord> =
             manifest.stages.iter().flat_map(|stage| &stage.tables).map(|record| (&*record.name, record)).collect();
         let table = |name: &str| {
             let found = match records.get(name) {
-                Some(record) if is_bundle(&record.file) => self.table(record).map(Arc::new),
-                Some(record) => self.shared(record),
+                Some(record) => {
+                    let is_part = is_bundle(&record.file);
+                    let here = if is_part { self.table(record).map(Arc::new) } else { self.shared(record) };
+                    here.or_else(|error| elsewhere(record).map(Arc::new).ok_or(error))
+                }
                 None if is_bundle(name) => self.opened.whole(&own_file(name), || self.whole(&own_file(name))),
                 None => return None,
             };
@@ -36,6 +47,56 @@ impl Folder {
             (_, Some(fault)) => Err(fault.to_string()),
             (drawn, None) => drawn,
         }
+    }
+
+    /// Draws page and figures of the last run again, with the code of this digest; none when there is none. `elsewhere` is
+    /// asked for tables that are not here, or of another run.
+    ///
+    /// # Errors
+    /// When a file cannot be written.
+    pub fn redraw(
+        &self,
+        draw: Draw<'_>,
+        code: &str,
+        elsewhere: Elsewhere<'_>,
+    ) -> Result<Option<Published>, StoreError> {
+        if !presence::is_folder(self.path()).map_err(StoreError::io("read", self.path()))? {
+            return Ok(None);
+        }
+        let _lock = self.lock()?;
+        let Some(old) = self.known()? else { return Ok(None) };
+        let new = Manifest { files: Vec::new(), ..old.manifest.clone() };
+        // Before anything is touched: the page that is there may be all that can be had.
+        let of_other_run = |file: &str| StoreError::OtherRun { path: self.path().join(file).display().to_string() };
+        let other_run = |record: &&TableRecord| old.state(&record.file) == FileState::OtherRun;
+        let records = || new.stages.iter().flat_map(|stage| &stage.tables);
+        if let Some(bundle) = records().filter(|record| is_bundle(&record.file)).find(other_run) {
+            // What many stages share is read as a whole, whose parts nothing else knows.
+            return Err(of_other_run(&bundle.file));
+        }
+        let missed = RefCell::new(None);
+        let elsewhere = |record: &TableRecord| {
+            let state = old.table_state(record);
+            let found = matches!(state, FileState::Absent | FileState::OtherRun).then(|| elsewhere(record)).flatten();
+            if found.is_none() && state == FileState::OtherRun {
+                missed.borrow_mut().get_or_insert_with(|| of_other_run(&record.file));
+            }
+            found
+        };
+        let drawn = match self.drawings(&new, draw, &elsewhere) {
+            Ok(drawn) => drawn,
+            Err(problem) => {
+                let problem = missed.take().map_or(problem, |missed: StoreError| missed.to_string());
+                let changes = Changes::default();
+                let (undrawn, seen) = (Some(problem), Vec::new());
+                return Ok(Some(Published { manifest: old.manifest, changes, undrawn, seen }));
+            }
+        };
+        let changes = Changes { manifest: true, drawn: true, ..Changes::default() };
+        let nothing = |_: &str, _: &str| Err(StoreError::InUse { path: String::new(), who: String::new() });
+        let source = Source { draw: Some(&|_, _| Ok(drawn.clone())), code, ..Source::of(&nothing) };
+        self.strike(&old, old.text(), &changes)?;
+        self.write(Some(old), new, changes, None::<fn() -> Facts>, source).map(Some)
     }
 
     /// Draws and writes page and figures, or lists those of before. Gives by whom they were drawn, and why there are none.
@@ -57,12 +118,12 @@ impl Folder {
             return Ok((drawn_by, None));
         };
         (source.next)(PAGE)?;
-        let drawn = self.drawings(manifest, draw);
+        let drawn = self.drawings(manifest, draw, &|_| None);
         // It may have taken long.
         (source.next)(PAGE)?;
         match drawn.and_then(|drawn| self.put_drawn(drawn)) {
             Ok(drawn) => {
-                changes.remove.extend(self.former(&earlier, &drawn));
+                changes.remove.extend(self.former(&earlier, &drawn)?);
                 listed.files.extend(drawn.files);
                 listed.seen.extend(drawn.seen);
             }
@@ -89,19 +150,24 @@ impl Folder {
 
     /// Figures that are no more, which would be taken for current ones. Where no page was listed, by an earlier version or
     /// because a run was killed, nobody knows which were ours: what is called a figure is taken for one.
-    pub(super) fn former(&self, earlier: &[String], drawn: &Listed) -> Vec<String> {
+    ///
+    /// # Errors
+    /// When a folder of figures cannot be read.
+    pub(super) fn former(&self, earlier: &[String], drawn: &Listed) -> Result<Vec<String>, StoreError> {
         let new: HashSet<&String> = drawn.files.iter().map(|record| &record.file).collect();
         let is_new = |file: &String| new.contains(file);
         if earlier.iter().any(|file| file == PAGE) {
-            return earlier.iter().filter(|file| is_drawn(file) && here(file) && !is_new(file)).cloned().collect();
+            return Ok(earlier.iter().filter(|file| is_drawn(file) && here(file) && !is_new(file)).cloned().collect());
         }
-        let figures = |folder: &str| -> Vec<String> {
-            let entries = fs::read_dir(self.path().join(folder)).into_iter().flatten().flatten();
-            let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+        let mut former = Vec::new();
+        for folder in [FIGURES, MEASURED] {
+            let path = self.path().join(folder);
+            let entries = presence::entries(&path).map_err(StoreError::io("read", &path))?;
+            let names = entries.iter().filter_map(|(path, _)| Some(path.file_name()?.to_string_lossy()));
             let figures = names
                 .filter(|name| name.split_once('.').is_some_and(|(_, ending)| ["svg", "vl.json"].contains(&ending)));
-            figures.map(|name| format!("{folder}/{name}")).collect()
-        };
-        [FIGURES, MEASURED].into_iter().flat_map(figures).filter(|file| !is_new(file)).collect()
+            former.extend(figures.map(|name| format!("{folder}/{name}")).filter(|file| !is_new(file)));
+        }
+        Ok(former)
     }
 }

@@ -9,6 +9,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use rayon::prelude::*;
 
 use super::{Folder, MANIFEST, here};
+use crate::presence;
 use crate::store::file;
 use crate::store::index::{self, Index, Seen};
 use crate::store::manifest::{FileRecord, Manifest, StageRecord, TableRecord};
@@ -22,6 +23,11 @@ pub enum FileState {
     Absent,
     /// There, with other bytes than were written; or no file at all.
     Changed,
+    /// Whole, but a file of another run: git exchanges the manifest on a checkout and leaves files that it does not keep,
+    /// and the index describes them as they were written.
+    OtherRun,
+    /// The system does not let it be read.
+    Unreadable,
     /// There, and listed, but nobody knows its digest: the manifest is of an earlier version, or the index is lost.
     Unknown,
     /// There, and not listed.
@@ -156,24 +162,39 @@ impl Known {
 
     fn look(&self, file: &str) -> FileState {
         let path = self.folder.path().join(file);
-        let Ok(metadata) = fs::metadata(&path) else {
+        let metadata = match presence::metadata(&path) {
+            Ok(Some(metadata)) => metadata,
             // A link that leads nowhere is something, but not what was written.
-            let there = path.symlink_metadata().is_ok();
-            return if there { FileState::Changed } else { FileState::Absent };
+            Ok(None) => match presence::link_metadata(&path) {
+                Ok(None) => return FileState::Absent,
+                Ok(Some(_)) => return FileState::Changed,
+                Err(_) => return FileState::Unreadable,
+            },
+            Err(_) => return FileState::Unreadable,
         };
-        if self.record(file).is_none() {
-            return FileState::Unlisted;
-        }
+        let Some(record) = self.record(file) else { return FileState::Unlisted };
         if !metadata.is_file() || !here(file) {
             return FileState::Changed;
         }
-        let Some((bytes, digest)) = self.expected(file) else { return FileState::Unknown };
-        if metadata.len() != bytes {
+        let noted = self.noted(file).filter(|noted| noted.bytes == metadata.len());
+        let expected = match self.expected(file) {
+            Some((bytes, digest)) if bytes == metadata.len() => Some(digest),
+            Some(_) => None,
+            None if record.varies && !self.belongs && noted.is_some() => None,
+            None => return FileState::Unknown,
+        };
+        if expected.is_none() && noted.is_none() {
             return FileState::Changed;
         }
-        match self.seen(file) {
-            Some(seen) if seen.digest == digest => FileState::Intact,
-            _ => FileState::Changed,
+        let Some(seen) = self.seen(file) else { return FileState::Unreadable };
+        if expected.is_some_and(|digest| seen.digest == digest) {
+            FileState::Intact
+        } else if noted.is_some_and(|noted| noted.digest == seen.digest) {
+            FileState::OtherRun
+        } else if self.expected(file).is_none() {
+            FileState::Unknown
+        } else {
+            FileState::Changed
         }
     }
 
@@ -181,13 +202,18 @@ impl Known {
     #[must_use]
     pub fn table_state(&self, record: &TableRecord) -> FileState {
         let state = self.state(&record.file);
-        if state != FileState::Unknown {
+        let varies = || self.record(&record.file).is_some_and(|listed| listed.varies);
+        if state != FileState::Unknown && !(state == FileState::OtherRun && varies()) {
             return state;
         }
         let known = held(&self.values).get(&record.name).copied();
         let good = known.unwrap_or_else(|| self.folder.table(record).is_ok());
         held(&self.values).insert(record.name.clone(), good);
-        if good { FileState::Intact } else { FileState::Changed }
+        match state {
+            _ if good => FileState::Intact,
+            FileState::OtherRun => state,
+            _ => FileState::Changed,
+        }
     }
 
     /// Whether a changed file differs in its line ends alone: git made them others when it checked the file out.
@@ -218,7 +244,8 @@ impl Known {
 
     fn is_changed(&self, record: &FileRecord) -> bool {
         let table = self.tables.get(&record.file).map(|&(stage, table)| &self.manifest.stages[stage].tables[table]);
-        table.map_or_else(|| self.state(&record.file), |table| self.table_state(table)) == FileState::Changed
+        let state = table.map_or_else(|| self.state(&record.file), |table| self.table_state(table));
+        matches!(state, FileState::Changed | FileState::Unreadable)
     }
 
     /// A file as a new manifest and a new index list it when nobody writes it. `values`: whether it varies, of a table
@@ -227,7 +254,9 @@ impl Known {
         let record = self.record(file)?.clone();
         match (self.state(file), values) {
             (FileState::Intact, _) => Some((record, self.seen(file))),
-            (FileState::Unknown, Some(varies)) => {
+            // It is described as it lies there, by which it is known still.
+            (FileState::OtherRun, _) if !record.varies => Some((record, self.seen(file))),
+            (FileState::Unknown | FileState::OtherRun, Some(varies)) => {
                 let seen = self.seen(file)?;
                 let (bytes, digest) = if varies { (None, None) } else { (Some(seen.bytes), Some(seen.digest.clone())) };
                 Some((FileRecord { bytes, digest, varies, ..record }, Some(seen)))

@@ -14,6 +14,7 @@ use std::sync::Arc;
 
 use super::changes::{compare, say_the_same, with_earlier_tables};
 use super::{Changes, FileState, Folder, Known, MANIFEST, held_text, here, is_drawn, split};
+use crate::presence;
 use crate::store::bundle::{self, is_bundle};
 use crate::store::error::StoreError;
 use crate::store::facts::Facts;
@@ -41,6 +42,8 @@ pub type PiecesOf<'a> = &'a dyn Fn(&str, &str) -> Option<Pieces<'a>>;
 pub type Tables<'a> = &'a dyn Fn(&str) -> Option<Arc<Table>>;
 /// Draws page and figures of a manifest and its tables.
 pub type Draw<'a> = &'a dyn Fn(&Manifest, Tables<'_>) -> Result<Vec<Drawn>, String>;
+/// Gives a table that is not here, or not that of the manifest, from where else it is kept.
+pub type Elsewhere<'a> = &'a dyn Fn(&TableRecord) -> Option<Table>;
 /// Hears which file is made next, and says whether to go on: all of them can take minutes.
 pub type Next<'a> = &'a dyn Fn(&str) -> Result<(), StoreError>;
 
@@ -176,35 +179,8 @@ impl Folder {
         }
     }
 
-    /// Draws page and figures of the last run again, with the code of this digest; none when there is none.
-    ///
-    /// # Errors
-    /// When a file cannot be written.
-    pub fn redraw(&self, draw: Draw<'_>, code: &str) -> Result<Option<Published>, StoreError> {
-        if !self.path().is_dir() {
-            return Ok(None);
-        }
-        let _lock = self.lock()?;
-        let Some(old) = self.known()? else { return Ok(None) };
-        let new = Manifest { files: Vec::new(), ..old.manifest.clone() };
-        // Before anything is touched: the page that is there may be all that can be had.
-        let drawn = match self.drawings(&new, draw) {
-            Ok(drawn) => drawn,
-            Err(problem) => {
-                let changes = Changes::default();
-                let (undrawn, seen) = (Some(problem), Vec::new());
-                return Ok(Some(Published { manifest: old.manifest, changes, undrawn, seen }));
-            }
-        };
-        let changes = Changes { manifest: true, drawn: true, ..Changes::default() };
-        let nothing = |_: &str, _: &str| Err(StoreError::InUse { path: String::new(), who: String::new() });
-        let source = Source { draw: Some(&|_, _| Ok(drawn.clone())), code, ..Source::of(&nothing) };
-        self.strike(&old, old.text(), &changes)?;
-        self.write(Some(old), new, changes, None::<fn() -> Facts>, source).map(Some)
-    }
-
     /// The folder is locked, and what is about to be replaced is struck from the manifest.
-    fn write(
+    pub(super) fn write(
         &self,
         mut old: Option<Known>,
         mut new: Manifest,
@@ -304,7 +280,7 @@ impl Folder {
 
     /// Takes whatever is about to be replaced from the list: if this run is killed, the next one must not take a new file
     /// for the old one. `text` is the manifest's, where it has one that is whole.
-    fn strike(&self, old: &Known, text: Option<Vec<u8>>, changes: &Changes) -> Result<(), StoreError> {
+    pub(super) fn strike(&self, old: &Known, text: Option<Vec<u8>>, changes: &Changes) -> Result<(), StoreError> {
         let Some(files) = self.left_by(old, changes) else { return Ok(()) };
         let text = match text.and_then(|text| Manifest::with_other_files(text, &files)) {
             Some(text) => text,
@@ -361,7 +337,7 @@ impl Folder {
     /// Notes what had to be read. Without it all is read again next time, so a folder that cannot be written is not a
     /// fault, and nobody who publishes is waited for.
     fn refresh(&self, known: &Known) {
-        if self.path().join(lock::NAME).exists() {
+        if presence::exists(&self.path().join(lock::NAME)).unwrap_or(true) {
             return;
         }
         let Ok(_lock) = self.lock() else { return };

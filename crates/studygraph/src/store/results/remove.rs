@@ -8,6 +8,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use super::Folder;
+use crate::presence;
 use crate::store::error::StoreError;
 
 impl Folder {
@@ -25,9 +26,9 @@ impl Folder {
             }
         }
         // Elsewhere folders cannot be opened.
-        for folder in folders.iter().filter(|folder| cfg!(unix) && folder.is_dir()) {
-            let synced = File::open(folder).and_then(|folder| folder.sync_all());
-            synced.map_err(StoreError::io("write", folder))?;
+        for folder in folders.iter().filter(|_| cfg!(unix)) {
+            let sync = || if presence::is_folder(folder)? { File::open(folder)?.sync_all() } else { Ok(()) };
+            sync().map_err(StoreError::io("write", folder))?;
         }
         Ok(())
     }

@@ -369,7 +369,7 @@ fn a_page_that_cannot_be_drawn_keeps_no_table_back() {
     assert!(listed(&folder).contains(&"ste.curve.parquet".to_owned()) && !listed(&folder).contains(&PAGE.to_owned()));
     fs::create_dir_all(folder.path().join(FIGURES)).unwrap();
     fs::write(folder.path().join("figures/old.svg"), "").unwrap();
-    let redrawn = folder.redraw(&draw, "").unwrap().unwrap();
+    let redrawn = folder.redraw(&draw, "", &|_| None).unwrap().unwrap();
     assert!(redrawn.undrawn.is_none() && listed(&folder).contains(&PAGE.to_owned()));
     assert!(!folder.path().join("figures/old.svg").exists(), "a figure that nobody drew");
     assert_eq!(publish_drawn(&folder, &tables).changes, Changes::default());

@@ -1,0 +1,92 @@
+//! Folders and files that the system does not let be read: never taken for absent ones.
+
+use std::fs;
+use std::path::Path;
+
+use crate::desk::Desk;
+
+/// A link to itself in the place of a folder: it cannot be read, be it by root.
+#[cfg(unix)]
+fn obstruct(path: &Path) {
+    fs::rename(path, path.with_extension("aside")).unwrap();
+    std::os::unix::fs::symlink(path, path).unwrap();
+}
+
+#[cfg(unix)]
+fn two_studies() -> Desk {
+    let desk = Desk::with("quick.yaml");
+    let text = fs::read_to_string(desk.path("quick.yaml")).unwrap();
+    fs::write(desk.path("other.yaml"), text.replace("study: quick", "study: other")).unwrap();
+    desk.run(&["run", "--quiet", "quick.yaml", "other.yaml"], 0);
+    fs::rename(desk.path("results/quick"), desk.path("quick.aside")).unwrap();
+    std::os::unix::fs::symlink("quick", desk.path("results/quick")).unwrap();
+    desk
+}
+
+#[cfg(unix)]
+#[test]
+fn results_that_cannot_be_read_are_not_absent() {
+    let desk = two_studies();
+    let (out, error) = desk.run(&["gc", "--days", "0"], 1);
+    assert!(out.is_empty() && error.contains("quick/manifest.json"), "{out}{error}");
+    let (_, error) = desk.run(&["diff", "results", "results"], 1);
+    assert!(error.contains("`quick/manifest.json` of results cannot be read: "), "{error}");
+    let (_, error) = desk.run(&["query", "select count(*) from quick.ste.summary"], 2);
+    assert!(error.contains("`quick/manifest.json` of results cannot be read: "), "{error}");
+    // Another study is answered for, and a list says which one is missing from it.
+    let (out, _) = desk.run(&["query", "--format", "csv", "select count(*) as n from other.ste.summary"], 0);
+    assert!(out.starts_with("n\n"), "{out}");
+    let (out, error) = desk.run(&["query"], 0);
+    assert!(out.contains("other.ste.summary") && !out.contains("quick."), "{out}");
+    assert!(error.contains("warning: `quick/manifest.json` of results cannot be read: "), "{error}");
+    assert!(desk.run(&["query", "--study", "quick"], 1).1.contains("cannot be read"));
+    for words in [&["status", "quick.yaml"][..], &["table", "quick.yaml"], &["report", "quick.yaml"]] {
+        assert!(desk.run(words, 1).1.contains("cannot read"), "{words:?}");
+    }
+    // Nothing of the cache is gone.
+    fs::remove_file(desk.path("results/quick")).unwrap();
+    fs::rename(desk.path("quick.aside"), desk.path("results/quick")).unwrap();
+    assert_eq!(desk.run(&["status", "quick.yaml"], 0).0, "quick: up to date\n");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_results_folder_and_a_cache_that_cannot_be_read_are_not_absent() {
+    let desk = Desk::with("quick.yaml");
+    desk.run(&["run", "--quiet", "quick.yaml"], 0);
+    let cache = desk.path(".gearstudy");
+    obstruct(&cache);
+    for words in [&["diff", "results", "results"][..], &["query"], &["gc"], &["status", "--check", "quick.yaml"]] {
+        assert!(desk.run(words, 1).1.contains(".gearstudy/cache"), "{words:?}");
+    }
+    let (out, error) = desk.run(&["status", "quick.yaml"], 0);
+    assert!(out.contains("up to date") && error.contains("warning: cannot read `.gearstudy/cache`"), "{out}{error}");
+    fs::remove_file(&cache).unwrap();
+    fs::rename(cache.with_extension("aside"), &cache).unwrap();
+    obstruct(&desk.path("results"));
+    for words in [
+        &["diff", "results", "results"][..],
+        &["diff"],
+        &["query"],
+        &["gc", "--days", "0"],
+        &["status", "quick.yaml"],
+        &["archive", "quick.yaml", "-o", "a.zip"],
+    ] {
+        let (out, error) = desk.run(words, 1);
+        assert!(out.is_empty() && error.contains("results"), "{words:?}: {out}{error}");
+        assert!(!error.contains("there is no") && !error.contains("no results"), "{words:?}: {error}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_of_studies_that_cannot_be_read_is_not_empty() {
+    let desk = Desk::with("quick.yaml");
+    std::os::unix::fs::symlink("studies", desk.path("studies")).unwrap();
+    for words in [&["status"][..], &["run", "quick"], &["check", "quick"]] {
+        let (_, error) = desk.run(words, 1);
+        assert!(error.contains("cannot read `studies`"), "{words:?}: {error}");
+    }
+    // A file that is named by its path needs no list.
+    desk.run(&["check", "quick.yaml"], 0);
+}
