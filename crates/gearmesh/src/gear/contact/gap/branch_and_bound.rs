@@ -17,7 +17,7 @@ const TOLERANCE: f64 = 1e-14;
 /// Where a stretch is not halved any more, over the length of the path.
 const CLOSEST: f64 = 1e-10;
 /// By how much of itself d²f/de² may be beyond its values at both ends of a stretch, over the square of the share by which f grows there.
-pub(super) const MORE: f64 = 0.5;
+pub(super) const MORE: f64 = 4.0;
 /// The most steps of Newton's method and of halving.
 const MOST_STEPS: usize = 64;
 
