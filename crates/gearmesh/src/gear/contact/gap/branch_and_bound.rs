@@ -16,8 +16,8 @@ use crate::gear::contact::separation::Touch;
 const TOLERANCE: f64 = 1e-14;
 /// Where a stretch is not halved any more, over the length of the path.
 const CLOSEST: f64 = 1e-10;
-/// By how much of itself d²f/de² may be beyond its values at both ends of a stretch, over the square of the share by which f grows there.
-pub(super) const MORE: f64 = 4.0;
+/// By how much of itself d²f/de² may be beyond its values at both ends of a stretch, over the square of the share by which df/de falls there.
+pub(super) const MORE: f64 = 0.5;
 /// The most steps of Newton's method and of halving.
 const MOST_STEPS: usize = 64;
 
@@ -190,7 +190,7 @@ impl<'a, 'b> Search<'a, 'b> {
         let beyond = (-flank.bend).max(0.0) * (along[1] - along[0]);
         let [one, other] = flank.slopes;
         // The rate may bend more in between than at both ends, by second order in how far they are from each other.
-        let share = (along[1] - along[0]) / along[0].max(f64::MIN_POSITIVE);
+        let share = 1.0 - rate[0].min(rate[1]) / rate[0].max(rate[1]).max(f64::MIN_POSITIVE);
         let more = MORE * share * share * rate_slope[0].abs().min(rate_slope[1].abs());
         let rate_slopes = [rate_slope[0].min(rate_slope[1]) - more, rate_slope[0].max(rate_slope[1]) + more];
         let turned = [one.min(other) - beyond, one.max(other) + beyond]

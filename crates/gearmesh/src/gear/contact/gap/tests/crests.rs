@@ -176,7 +176,7 @@ fn the_separation_stays_within_its_bounds() {
                     (from, to) = (to, from);
                 }
                 let [first, last] = [&touches[from], &touches[to]];
-                let share = (last.curvature - first.curvature) / first.curvature;
+                let share = 1.0 - first.rate.min(last.rate) / first.rate.max(last.rate);
                 let least = first.rate_slope.abs().min(last.rate_slope.abs());
                 let more = branch_and_bound::MORE * share * share * least + 1e-9 * least;
                 for touch in &touches[from..=to] {
