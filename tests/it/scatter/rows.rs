@@ -12,7 +12,8 @@ fn a_sample_is_the_stage_with_its_values() {
         "samples: 16\nindices: 16\noutputs: [peak_to_peak, mean, largest_pressure]",
     );
     let (of, warnings) = ran(&text);
-    assert!(warnings.is_empty(), "{warnings:?}");
+    // These loads press tip corners against the flanks.
+    assert!(warnings.iter().all(|told| told.contains("`corner_contact` is `none`")), "{warnings:?}");
     let rows = of("rows");
     // Four fields: each sample itself, with one field after the other, and with all; three torques.
     assert_eq!(rows.rows(), 16 * 6 * 3);
