@@ -9,6 +9,7 @@ use std::path::Path;
 use tempfile::{Builder, TempDir};
 
 use super::Ending;
+use studygraph::presence;
 
 /// How their names begin.
 const PREFIX: &str = "gearstudy-";
@@ -43,7 +44,7 @@ fn made(root: &Path) -> io::Result<Scratch> {
             // Where there are no locks, nothing is known of other folders either.
             Err(TryLockError::Error(_)) => return Ok(Scratch { folder, _lock: None }),
         };
-        if fs::symlink_metadata(folder.path()).is_ok() {
+        if presence::link_metadata(folder.path())?.is_some() {
             sweep(root, folder.path());
             return Ok(Scratch { folder, _lock: lock });
         }
@@ -66,14 +67,13 @@ fn locked(_folder: &Path) -> Result<File, TryLockError> {
 /// Removes the folders of runs that have ended; of this user, since anybody may write here.
 fn sweep(root: &Path, own: &Path) {
     let Some(user) = owner(own) else { return };
-    for entry in fs::read_dir(root).into_iter().flatten().flatten() {
-        let path = entry.path();
-        let is_one = entry.file_name().to_string_lossy().starts_with(PREFIX) && path != own;
+    // A folder that is not found or cannot be removed does no harm.
+    for (path, _) in presence::entries(root).unwrap_or_default() {
+        let is_one = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(PREFIX)) && path != own;
         if is_one
             && owner(&path) == Some(user)
             && let Ok(_lock) = locked(&path)
         {
-            // A folder that cannot be removed does no harm.
             let _ = fs::remove_dir_all(&path);
         }
     }
@@ -82,7 +82,7 @@ fn sweep(root: &Path, own: &Path) {
 /// Who owns a folder; nobody of what is none.
 #[cfg(unix)]
 fn owner(folder: &Path) -> Option<u32> {
-    let facts = fs::symlink_metadata(folder).ok().filter(fs::Metadata::is_dir)?;
+    let facts = presence::link_metadata(folder).ok().flatten().filter(fs::Metadata::is_dir)?;
     Some(std::os::unix::fs::MetadataExt::uid(&facts))
 }
 

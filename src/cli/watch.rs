@@ -193,7 +193,8 @@ fn saves_of(file: &Path) -> Result<(impl Watcher, Receiver<Step>), notify::Error
 
 /// The number of threads of this program, where the system says it.
 fn threads() -> Option<usize> {
-    std::fs::read_dir("/proc/self/task").ok().map(Iterator::count)
+    let tasks = presence::entries(Path::new("/proc/self/task")).ok()?;
+    (!tasks.is_empty()).then_some(tasks.len())
 }
 
 /// Runs the study as it is now, and shows its page or what is wrong.

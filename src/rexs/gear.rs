@@ -138,13 +138,19 @@ impl RexsGear {
         if let (Some(upper), lower) = (upper?, lower?) {
             // A_sn = A_W / cos α.
             let finished = "addendum_modification_coefficient_after_finishing";
-            of_flank.iter().for_each(|component| component.follows(finished));
-            ["span_measurement", "size_over_balls", "size_over_pins"].iter().for_each(|name| gear.follows(name));
+            for component in of_flank {
+                component.follows(finished);
+            }
+            for name in ["span_measurement", "size_over_balls", "size_over_pins"] {
+                gear.follows(name);
+            }
             let of_span = |said: Said| said.map(|allowance| allowance / cos);
             return Ok(Some(Thickness::Allowance(of_span(upper), lower.map(of_span))));
         }
         // A lower deviation alone is none.
-        of_span.iter().for_each(|name| gear.set(name, Fate::NotSupported));
+        for name in of_span {
+            gear.set(name, Fate::NotSupported);
+        }
         let over = agreed(&[gear], &[("size_over_balls", LENGTHS, 1.0), ("size_over_pins", LENGTHS, 1.0)])?;
         let of_balls = ["upper_backlash_allowance_balls_or_pins", "lower_backlash_allowance_balls_or_pins"];
         let [upper, lower] = of_balls.map(|name| gear.number(name, LENGTHS));
@@ -152,8 +158,12 @@ impl RexsGear {
             let with = |allowance: Said| allowance.map(|allowance| over.value + allowance);
             return Ok(Some(Thickness::OverBalls(ball, with(upper), lower.map(with))));
         }
-        of_balls.iter().for_each(|name| gear.set(name, Fate::NotSupported));
-        ["size_over_balls", "size_over_pins"].iter().for_each(|name| gear.set(name, Fate::Follows));
+        for name in of_balls {
+            gear.set(name, Fate::NotSupported);
+        }
+        for name in ["size_over_balls", "size_over_pins"] {
+            gear.set(name, Fate::Follows);
+        }
         if let Some(finished) = agreed(of_flank, &[("addendum_modification_coefficient_after_finishing", PLAIN, 1.0)])?
         {
             // A_sn = 2 m (x_E − x) tan α.
@@ -264,9 +274,9 @@ impl<'a> RexsPair<'a> {
         if pair.centre_distance_allowance.iter().any(Option::is_none)
             && let Some(stage) = stage
         {
-            ["upper_center_distance_allowance", "lower_center_distance_allowance"]
-                .iter()
-                .for_each(|name| stage.set(name, Fate::NotSupported));
+            for name in ["upper_center_distance_allowance", "lower_center_distance_allowance"] {
+                stage.set(name, Fate::NotSupported);
+            }
         }
         let mut gears = Vec::new();
         for role in ["gear_1", "gear_2"] {
@@ -281,7 +291,9 @@ impl<'a> RexsPair<'a> {
             pair.gears.push(gear);
         }
         if let Some(stage) = stage {
-            OF_STAGE.iter().for_each(|name| stage.follows(name));
+            for name in OF_STAGE {
+                stage.follows(name);
+            }
         }
         Ok(pair)
     }

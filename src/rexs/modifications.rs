@@ -60,10 +60,12 @@ pub(super) fn modifications<'a>(
         let found: Option<Vec<Modification>> = alike.iter().map(|one| modification(one, tip_diameter)).collect();
         match found {
             Some(mut found) if is_one_each && found.windows(2).all(|two| two[0].is_same(&two[1])) => {
-                read.extend(found.pop())
+                read.extend(found.pop());
             }
             _ => {
-                alike.iter().for_each(|component| component.is_not_supported());
+                for component in &alike {
+                    component.is_not_supported();
+                }
                 let ids: Vec<&str> = alike.iter().map(|component| component.id.as_str()).collect();
                 pair.notes.push(
                     format!("Not supported as it is: the {kind} {}.", ids.join(" and ")).escape_debug().to_string(),

@@ -64,7 +64,9 @@ impl Fates {
 
 /// Attributes with a fate, and the same by component; components that have the same ones stand together.
 fn listed(components: &[&Component], fate: Fate) -> (Vec<String>, String) {
-    let (mut all, mut groups): (Vec<String>, Vec<(String, Vec<String>, String)>) = (Vec::new(), Vec::new());
+    let mut all = Vec::new();
+    // Kind, identifiers and names.
+    let mut groups: Vec<(String, Vec<String>, String)> = Vec::new();
     for component in components {
         let (kind, id) = (name(&component.kind), name(&component.id));
         let names: Vec<String> = component

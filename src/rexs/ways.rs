@@ -18,7 +18,9 @@ pub(super) fn agreed(components: &[&Component], ways: &[Way]) -> Result<Option<S
     let mut found: Option<(Said, &str)> = None;
     for (name, units, divisor) in ways {
         if found.is_some() {
-            components.iter().for_each(|component| component.follows(name));
+            for component in components {
+                component.follows(name);
+            }
             continue;
         }
         for component in components {

@@ -170,7 +170,7 @@ impl RexsPair<'_> {
             }
             match gear.tip {
                 Some(TipCorner::Chamfer(size)) => {
-                    text.group(", tip: { chamfer: { ", &[("size", Some(size), " mm")], " } }")
+                    text.group(", tip: { chamfer: { ", &[("size", Some(size), " mm")], " } }");
                 }
                 Some(TipCorner::SemiTopping(angle, height)) => {
                     let fields = [("angle", Some(angle), " deg"), ("height", Some(height), " mm")];

@@ -60,14 +60,14 @@ pub(super) struct Slurm<'a> {
 struct Element {
     /// What the name of the job has behind that of the plan: its first shard, or `merge`.
     name: String,
-    element: Option<usize>,
+    index: Option<usize>,
     /// The number of the job.
     job: Option<String>,
 }
 
 impl Element {
     fn shard(&self) -> Option<usize> {
-        Some(self.name.parse::<usize>().ok()? + self.element?)
+        Some(self.name.parse::<usize>().ok()? + self.index?)
     }
 }
 
@@ -273,8 +273,8 @@ impl<'a> Slurm<'a> {
         let element = |line: &str| {
             let mut fields = line.trim().split('|');
             let name = fields.next()?.strip_prefix(&prefix)?.to_owned();
-            let element = fields.next()?.parse().ok();
-            Some(Element { name, element, job: fields.next().and_then(job_number).map(str::to_owned) })
+            let index = fields.next()?.parse().ok();
+            Some(Element { name, index, job: fields.next().and_then(job_number).map(str::to_owned) })
         };
         Ok(said.lines().filter_map(element).collect())
     }

@@ -86,7 +86,7 @@ fn warn_of_corners(asked: &Asked, rows: &RowSet, (context, inputs): (&Context, &
     let most = torque.and_then(|torque| (0..rows.len()).map(|row| at(torque)(&row)).reduce(f64::max));
     let loaded: Vec<usize> =
         (0..rows.len()).filter(|row| torque.is_none_or(|torque| Some(at(torque)(row)) == most)).collect();
-    let mut candidates = BTreeSet::from_iter(loaded.first().into_iter().chain(loaded.last()).copied());
+    let mut candidates: BTreeSet<_> = loaded.first().into_iter().chain(loaded.last()).copied().collect();
     for (column, _) in asked.columns.iter().enumerate().filter(|(_, column)| column.class == Class::Design) {
         let order = |one: &usize, other: &usize| at(column)(one).total_cmp(&at(column)(other));
         candidates.extend(loaded.iter().copied().min_by(order));

@@ -106,6 +106,7 @@ impl Keyed {
             stop: &stop,
             progress: &|_| (),
             warn: &|warning| warnings.lock().unwrap().push(warning),
+            is_heard: true,
             work: &Tally::default(),
         };
         let others = Parts { keyed: self, node, tables };

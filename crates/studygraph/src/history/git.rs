@@ -72,7 +72,7 @@ impl Repository {
         match ask(folder, &["rev-parse", "--show-toplevel"]) {
             Err(problem) if problem.contains(git::NO_WORK_TREE) => {
                 let own = path(ask(folder, &["rev-parse", "--absolute-git-dir"])?);
-                Ok(Self { top: bare_top(folder, own)?, is_bare: true, link: None })
+                Ok(Self { top: bare_top(folder, &own)?, is_bare: true, link: None })
             }
             top => Ok(Self { top: path(top?), is_bare: false, link: None }),
         }
@@ -233,14 +233,14 @@ impl Repository {
 }
 
 /// The folder that stands for the top of the work tree of a bare repository: its own, or that of the `.git` that names it.
-fn bare_top(folder: &Path, own: PathBuf) -> Result<PathBuf, String> {
+fn bare_top(folder: &Path, own: &Path) -> Result<PathBuf, String> {
     let cannot = |error: std::io::Error| format!("cannot find `{}`: {error}", folder.display());
     let folder = folder.canonicalize().map_err(cannot)?;
     let own = own.canonicalize().map_err(cannot)?;
     if folder.starts_with(&own) {
         return Ok(own);
     }
-    let named = folder.ancestors().find(|above| above.join(".git").symlink_metadata().is_ok());
+    let named = folder.ancestors().find(|above| matches!(presence::link_metadata(&above.join(".git")), Ok(Some(_))));
     Ok(named.unwrap_or(&folder).to_owned())
 }
 

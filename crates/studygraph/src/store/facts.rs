@@ -10,6 +10,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use super::manifest::{Machine, Program, StudyFolder};
 use crate::about::About;
 use crate::git;
+use crate::presence;
 
 /// What a manifest says besides the results.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -85,7 +86,7 @@ fn tracked(folder: &Path, file: &Path) -> Option<PathBuf> {
     let (folder, file) = (real(folder)?, real(file)?);
     let inside = file.strip_prefix(&folder).ok()?;
     let below = || inside.ancestors().skip(1).filter(|below| !below.as_os_str().is_empty());
-    let nested = below().find(|below| folder.join(below).join(".git").symlink_metadata().is_ok());
+    let nested = below().find(|below| matches!(presence::link_metadata(&folder.join(below).join(".git")), Ok(Some(_))));
     Some(nested.unwrap_or(inside).to_owned())
 }
 
@@ -166,7 +167,7 @@ mod tests {
         run("", &["init", "-q"]);
         // A pattern of git in a name is no pattern here.
         write("a*.yaml", "1");
-        assert_eq!(of(&["a*.yaml"]), StudyFolder { commit: None, uncommitted_changes: Some(true) });
+        assert_eq!(of(&["a*.yaml"]), StudyFolder { uncommitted_changes: Some(true), ..StudyFolder::default() });
         std::fs::create_dir_all(folder.path().join("traces/sub")).unwrap();
         write("traces/b.csv", "1");
         write("traces/ignored.csv", "1");

@@ -152,22 +152,21 @@ pub fn sweep(folder: &Path) {
     }
 }
 
-/// The same in a folder that others may write to now: removes files of processes of this computer that have ended.
+/// The same in a folder that others may write to now: removes files of processes of this computer that have ended. A leftover that
+/// is not found or cannot be removed does no harm.
 pub fn sweep_ended(folder: &Path) {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let name = entry.file_name();
+    for (path, _) in presence::entries(folder).unwrap_or_default() {
         let process = || {
-            let (space, rest) = name.to_str()?.strip_prefix(TEMPORARY)?.split_once('-')?;
+            let (space, rest) = path.file_name()?.to_str()?.strip_prefix(TEMPORARY)?.split_once('-')?;
             let process: u32 = rest.split_once('-')?.0.parse().ok()?;
             (!space.is_empty() && space == self::space()).then_some(process)
         };
         let is_gone = |process: u32| {
-            fs::metadata(format!("/proc/{process}")).is_err_and(|error| error.kind() == io::ErrorKind::NotFound)
+            presence::metadata(Path::new(&format!("/proc/{process}"))).is_ok_and(|found| found.is_none())
         };
         if process().is_some_and(is_gone) {
-            // A leftover that cannot be removed does no harm.
-            let _ = fs::remove_file(entry.path());
+            let _ = fs::remove_file(&path);
         }
     }
 }

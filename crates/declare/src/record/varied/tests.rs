@@ -3,6 +3,8 @@
 use super::*;
 use crate::units::LENGTH;
 
+type Change<'a> = &'a dyn Fn(&mut Varied);
+
 fn at(line: usize) -> Place {
     Place { line, ..Place::default() }
 }
@@ -106,7 +108,7 @@ fn whatever_a_stage_can_read_is_in_the_digest_of_all() {
         varied.write(&mut writer);
         writer.finish()
     };
-    let changes: [(&str, &dyn Fn(&mut Varied)); 9] = [
+    let changes: [(&str, Change); 9] = [
         ("own value", &|varied| axis().put(&mut varied.stages[0].record, 9e-6)),
         ("name of a stage", &|varied| varied.stages[0].name = "t".into()),
         ("field of a stage", &|varied| drop(varied.stages[0].record.fields.remove(0))),

@@ -88,7 +88,13 @@ impl LoadCase<'_> {
             }
         }
         let period = pair.base_pitch;
-        (lengths != [0.0; 2]).then_some(NeglectedCorners { facing, clearance, lengths, path, period })
+        lengths.iter().any(|length| *length > 0.0).then_some(NeglectedCorners {
+            facing,
+            clearance,
+            lengths,
+            path,
+            period,
+        })
     }
 }
 

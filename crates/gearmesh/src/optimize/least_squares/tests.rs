@@ -5,6 +5,8 @@ use std::convert::Infallible;
 use super::uncertainty::{Uncertainty, digits};
 use super::*;
 
+type Model<'a> = &'a dyn Fn(&[f64]) -> Option<Vec<f64>>;
+
 /// A fit of what `model` gives, and how many points it asked for.
 fn fitted(bounds: &[(f64, f64)], start: &[f64], model: &dyn Fn(&[f64]) -> Option<Vec<f64>>) -> (Option<Fit>, usize) {
     let mut asked = 0;
@@ -138,7 +140,7 @@ fn the_least_at_an_edge_is_that_of_a_dense_grid() {
     let wedge = |p: &[f64]| (2.0 * p[0] + p[1] <= 1.0 && p[0] + 2.0 * p[1] <= 1.0).then(|| residuals(p));
     let to_bound = |p: &[f64]| (p[0] + 3.0 * p[1] <= 1.0).then(|| vec![p[0] + 3.0, p[1] - 3.0]);
     let bounds = [(-2.0, 2.0), (-2.0, 2.0)];
-    let models: [(&str, &dyn Fn(&[f64]) -> Option<Vec<f64>>); 5] =
+    let models: [(&str, Model); 5] =
         [("disc", &disc), ("outside", &outside), ("corner", &corner), ("wedge", &wedge), ("bound", &to_bound)];
     for (name, model) in models {
         let least = least_of_grid(bounds, 800, model);

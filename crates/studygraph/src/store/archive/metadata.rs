@@ -154,7 +154,7 @@ fn workflow(description: &Description<'_>) -> Value {
         "identifier": format!("blake3:{}", manifest.study_digest),
         "programmingLanguage": reference(LANGUAGE),
         "hasPart": references(kinds.into_iter().map(tool)),
-        "step": references(manifest.stages.iter().map(|stage| step(stage))),
+        "step": references(manifest.stages.iter().map(step)),
     })
 }
 
@@ -358,10 +358,14 @@ fn files(description: &Description<'_>) -> Vec<Value> {
             PAGE => "The report: figures, tables, and a verdict on every number that was compared.",
             _ => match table.or(holder) {
                 Some(table) => &*table.description,
-                None if inside.ends_with(".h5") => "The tables of the study in one HDF5 file.",
-                None if inside.ends_with(".vl.json") => "A figure of the report, as Vega-Lite.",
-                None if inside.ends_with(".svg") => "A figure of the report.",
-                None => "A file of the results.",
+                None => match inside.rsplit_once('.') {
+                    Some((_, "h5")) => "The tables of the study in one HDF5 file.",
+                    Some((name, "json")) if name.rsplit('.').next() == Some("vl") => {
+                        "A figure of the report, as Vega-Lite."
+                    }
+                    Some((_, "svg")) => "A figure of the report.",
+                    _ => "A file of the results.",
+                },
             },
         };
         put("description", json!(what));

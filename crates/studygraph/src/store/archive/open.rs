@@ -15,6 +15,7 @@ use zip::unstable::read::ZipIterable;
 use zip::{CompressionMethod, ZipArchive};
 
 use super::{ArchiveError, METADATA, sha256};
+use crate::presence;
 use crate::store::file;
 
 /// An archive has a few dozen entries.
@@ -166,15 +167,14 @@ impl<R: Read + Seek> Archive<R> {
         let (mut files, mut entries, mut bytes) = (Vec::new(), BTreeMap::new(), 0_u64);
         let mut folders = vec![(folder.to_owned(), String::new())];
         while let Some((folder, inside)) = folders.pop() {
-            for entry in fs::read_dir(&folder).map_err(|error| unreadable(&folder, error))? {
-                let entry = entry.map_err(|error| unreadable(&folder, error))?;
-                let own = entry.file_name();
+            for (path, _) in presence::entries(&folder).map_err(|error| unreadable(&folder, error))? {
+                let own = path.file_name().unwrap_or_default();
                 let own = own.to_str().ok_or_else(|| refused(format!("the name `{}` is not UTF-8", own.display())))?;
-                let (path, inside) = (entry.path(), format!("{inside}{own}"));
+                let inside = format!("{inside}{own}");
                 if is_of_a_system(&inside) {
                     continue;
                 }
-                let facts = entry.metadata().map_err(|error| unreadable(&path, error))?;
+                let facts = fs::symlink_metadata(&path).map_err(|error| unreadable(&path, error))?;
                 let problem = match safe(&inside) {
                     Err(problem) => Some(problem),
                     Ok(()) if facts.is_symlink() => Some("is a symbolic link"),

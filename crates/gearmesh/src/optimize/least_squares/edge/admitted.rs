@@ -145,9 +145,9 @@ impl<E> Admitted<'_, '_, E> {
     fn crossing(&mut self, from: &[f64], along: &[f64], reach: f64) -> Result<Option<f64>, E> {
         let (mut inside, mut outside) = (None, None);
         if self.at(from)?.is_some() {
-            inside = Some(0.0)
+            inside = Some(0.0);
         } else {
-            outside = Some(0.0)
+            outside = Some(0.0);
         }
         let mut step = reach;
         for _ in 0..WIDENINGS {
@@ -156,9 +156,9 @@ impl<E> Admitted<'_, '_, E> {
             }
             let side = if inside.is_some() { step } else { -step };
             if self.at(&plus(from, side, along))?.is_some() {
-                inside = Some(side)
+                inside = Some(side);
             } else {
-                outside = Some(side)
+                outside = Some(side);
             }
             step *= 4.0;
         }

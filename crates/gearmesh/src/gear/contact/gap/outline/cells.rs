@@ -21,7 +21,7 @@ const BLOCK: usize = 16;
 pub(in super::super) struct Cells {
     /// Where each begins, and the last one ends, ascending.
     ends: Vec<f64>,
-    cells: Vec<Cell>,
+    curves: Vec<Cell>,
     /// Whether the profile has a kink, or is not known to be smooth, where each begins or the last one ends.
     corners: Vec<bool>,
     /// Lower bounds of the depth and of its second derivative at the beginning of each cell, over blocks of cells.
@@ -75,8 +75,12 @@ impl Cells {
         let base = outline.position(0.0);
         let [first, last] = if outline.is_point { [f64::NEG_INFINITY, base] } else { [base, f64::INFINITY] };
         cells.ends.push(outline.cuts[0].max(first));
-        let mut knots: Vec<f64> =
-            outline.parts.iter().flat_map(|part| part.knots()).map(|roll| outline.position(*roll)).collect();
+        let mut knots: Vec<f64> = outline
+            .parts
+            .iter()
+            .flat_map(crate::gear::modification::section::Section::knots)
+            .map(|roll| outline.position(*roll))
+            .collect();
         knots.sort_by(f64::total_cmp);
         let closest = 1e-9 * (outline.facing.end - outline.facing.start);
         for (piece, ends) in outline.cuts.windows(2).enumerate() {
@@ -108,7 +112,7 @@ impl Cells {
             let last = c0 + length * (c1 + length * (c2 + length * c3));
             let bends = [2.0 * c2, 2.0 * c2 + 6.0 * c3 * length];
             let least = c0.min(one).min(other).min(last);
-            self.cells.push(Cell { cubic: Some(cubic), piece, least, bends });
+            self.curves.push(Cell { cubic: Some(cubic), piece, least, bends });
             self.ends.push(ends[1]);
             return;
         }
@@ -116,7 +120,7 @@ impl Cells {
             let ends = [at, at + 1].map(|end| share(&ends, end, CURVED_CELLS));
             let values = ends.map(|end| outline.depth_on(end, piece));
             let least = outline.below(piece, ends).least(values, ends[1] - ends[0]);
-            self.cells.push(Cell { cubic: None, piece, least, bends: [0.0; 2] });
+            self.curves.push(Cell { cubic: None, piece, least, bends: [0.0; 2] });
             self.ends.push(ends[1]);
         }
     }
@@ -126,7 +130,7 @@ impl Cells {
             (0..self.count()).map(|at| [at, at + 1].map(|end| self.rates(outline, self.ends[end], at)[1])).collect();
         let finite = slopes.iter().flatten().filter(|slope| slope.is_finite());
         let negligible = SLOPE_TOLERANCE * finite.fold(0.0_f64, |most, slope| most.max(slope.abs()));
-        let is_cubic = |at: usize| self.cells[at].cubic.is_some();
+        let is_cubic = |at: usize| self.curves[at].cubic.is_some();
         self.corners = (0..=self.count())
             .map(|at| {
                 let is_inside = at > 0 && at < self.count();
@@ -144,15 +148,15 @@ impl Cells {
                 [least.min(cell.least), bend.min(cell.bends[0]).min(cell.bends[1])]
             })
         };
-        self.blocks = self.cells.chunks(BLOCK).map(of_block).collect();
-        self.from = self.cells.iter().map(|cell| cell.least).collect();
+        self.blocks = self.curves.chunks(BLOCK).map(of_block).collect();
+        self.from = self.curves.iter().map(|cell| cell.least).collect();
         for at in (1..self.from.len()).rev() {
             self.from[at - 1] = self.from[at - 1].min(self.from[at]);
         }
     }
 
     pub(in super::super) fn count(&self) -> usize {
-        self.cells.len()
+        self.curves.len()
     }
 
     /// Where a cell begins; of their number, where the last one ends.
@@ -162,7 +166,7 @@ impl Cells {
 
     /// The piece of the outline on which a cell lies.
     pub(in super::super) fn piece(&self, cell: usize) -> usize {
-        self.cells[cell].piece
+        self.curves[cell].piece
     }
 
     /// The first corner behind a cell: the number of the cell that begins there.
@@ -179,7 +183,7 @@ impl Cells {
     /// Depth, and its first and second derivative, on a cell.
     #[inline]
     pub(in super::super) fn rates(&self, outline: &Outline, position: f64, cell: usize) -> [f64; 3] {
-        let Cell { cubic, piece, .. } = &self.cells[cell];
+        let Cell { cubic, piece, .. } = &self.curves[cell];
         if let Some([c0, c1, c2, c3]) = cubic {
             let t = position - self.ends[cell];
             return [c0 + t * (c1 + t * (c2 + t * c3)), c1 + t * (2.0 * c2 + 3.0 * t * c3), 2.0 * c2 + 6.0 * t * c3];
@@ -207,14 +211,14 @@ impl Cells {
         ends: [f64; 2],
         rates: [&[f64; 3]; 2],
     ) -> Below {
-        if self.cells[first].cubic.is_none() {
-            return outline.below(self.cells[first].piece, ends);
+        if self.curves[first].cubic.is_none() {
+            return outline.below(self.curves[first].piece, ends);
         }
         // Straight within a cell.
         let mut bend = rates[0][2].min(rates[1][2]);
         if first < last {
             let inside = self.over(first + 1, last, |cell| cell.bends[0].min(cell.bends[1]), 1);
-            bend = bend.min(self.cells[first].bends[1]).min(self.cells[last].bends[0]).min(inside);
+            bend = bend.min(self.curves[first].bends[1]).min(self.curves[last].bends[0]).min(inside);
         }
         Below { bend, slopes: [rates[0][1], rates[1][1]], is_exact: true }
     }
@@ -222,7 +226,7 @@ impl Cells {
     /// The least of some cells from one to before another, by blocks where there are many.
     #[inline]
     fn over(&self, from: usize, to: usize, of: impl Fn(&Cell) -> f64, which: usize) -> f64 {
-        let least = |from: usize, to: usize| self.cells[from..to].iter().map(&of).fold(f64::INFINITY, f64::min);
+        let least = |from: usize, to: usize| self.curves[from..to].iter().map(&of).fold(f64::INFINITY, f64::min);
         let (begin, end) = (from.div_ceil(BLOCK), to / BLOCK);
         if begin >= end {
             return if from < to { least(from, to) } else { f64::INFINITY };
