@@ -78,7 +78,7 @@ fn no_name_is_offered_that_lacks_a_word() {
 /// The message of a study whose only stage has this value at the end of this way.
 fn message(way: &[String], value: &str) -> String {
     let (kind, way) = way.split_first().unwrap();
-    let open: String = way.iter().map(|name| format!("{{ {name}: ")).collect();
+    let open: String = way.iter().flat_map(|name| ["{ ", name, ": "]).collect();
     let close = " }".repeat(way.len().saturating_sub(1));
     let fields = open.strip_prefix("{ ").unwrap_or_default();
     let text = format!("study: hints\nstages:\n  one: {{ kind: {kind}, {fields}{value}{close} }}\n");

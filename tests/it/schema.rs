@@ -157,7 +157,7 @@ fn the_program_accepts_what_the_schema_does() {
         format!("study: a\nstages:\n  pair:\n    {pair} 3\u{a0}mm\n"),
         format!("study: a\nstages:\n  pair:\n    {pair} 3\u{202f}mm\n"),
         format!("study: a\nstages:\n  pair:\n    {pair} |\n      3 mm\n"),
-        format!("study: a\nstages:\n  <<: &s\n    pair:\n      {}\n", format!("{pair} 3 mm").replace("\n", "\n  ")),
+        format!("study: a\nstages:\n  <<: &s\n    pair:\n      {}\n", format!("{pair} 3 mm").replace('\n', "\n  ")),
     ] {
         let read = gearstudy::program::load_text(&text, Path::new("agreed.yaml"));
         let wrong = read.err().map(|error| error.to_string()).unwrap_or_default();

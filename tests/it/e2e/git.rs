@@ -431,7 +431,9 @@ fn git_is_started_in_one_place() {
             let name = entry.file_name().unwrap().to_string_lossy().into_owned();
             if entry.is_dir() {
                 walk(&entry, found);
-            } else if name.ends_with(".rs") && fs::read_to_string(&entry).unwrap().contains("Command::new(\"git\")") {
+            } else if entry.extension().is_some_and(|ending| ending == "rs")
+                && fs::read_to_string(&entry).unwrap().contains("Command::new(\"git\")")
+            {
                 found.push(entry.display().to_string().replace('\\', "/"));
             }
         }

@@ -277,7 +277,7 @@ fn the_page_is_sent_again_after_a_crowd() {
     let began = std::time::Instant::now();
     let ended = (0..60).any(|_| {
         let sent = slow.write_all(b"G");
-        sent.is_err() || matches!(slow.read(&mut [0; 64]), Ok(_))
+        sent.is_err() || slow.read(&mut [0; 64]).is_ok()
     });
     assert!(ended && began.elapsed() < Duration::from_secs(20), "{:?}", began.elapsed());
 }

@@ -356,13 +356,11 @@ fn a_stage_that_is_called_otherwise_has_other_keys_where_tables_name_it() {
         let graph = Graph::new(&study, &[]).unwrap_or_else(|wrong| panic!("{}\n{renamed}", wrong.message));
         assert!(graph.order.len() == kinds.len());
         // What the stage gives does not change with its name.
-        for (stored, tables) in [(format!("other-{name}"), name.to_owned())] {
-            if let Some(known) = base.stored.get(&tables).cloned() {
-                base.stored.insert(stored.clone(), known);
-            }
-            if let Some(known) = base.tables.get(&tables).cloned() {
-                base.tables.insert(stored, known);
-            }
+        if let Some(known) = base.stored.get(name).cloned() {
+            base.stored.insert(format!("other-{name}"), known);
+        }
+        if let Some(known) = base.tables.get(name).cloned() {
+            base.tables.insert(format!("other-{name}"), known);
         }
         let changed = Keyed::new(study, &base.stored).unwrap();
         assert_eq!(base.stale(&changed), Vec::<String>::new(), "{name}");

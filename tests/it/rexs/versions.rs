@@ -12,11 +12,14 @@ use gearstudy::rexs;
 
 const VERSIONS: [&str; 10] = ["1.0", "1.1", "1.2", "1.3", "1.4", "1.5", "1.6", "1.7", "2.0", "2.0.0"];
 
+/// Kind, identifier, and attributes: name, unit and value.
+type Component = (&'static str, u32, Vec<[String; 3]>);
+/// Kind, and the role of each component by its identifier.
+type Relation = (&'static str, Vec<(&'static str, u32)>);
+
 /// The same pair as each version says it: up to 1.2 gears refer to their tools in order, and flanks are `flank_geometry`; from 1.3 on
 /// manufacturing steps have them; 2.0 names the tip radius otherwise. Stages, gears, flanks and so on by kind, id, and attributes.
-fn said_by(
-    version: &str,
-) -> (Vec<(&'static str, u32, Vec<[String; 3]>)>, Vec<(&'static str, Vec<(&'static str, u32)>)>) {
+fn said_by(version: &str) -> (Vec<Component>, Vec<Relation>) {
     let attribute = |id: &str, unit: &str, value: &str| [id, unit, value].map(str::to_owned);
     let is_old = ["1.0", "1.1", "1.2"].contains(&version);
     let degrees = if is_old { "°" } else { "deg" };
@@ -106,16 +109,17 @@ fn in_xml(version: &str) -> String {
     let mut text = format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model version=\"{version}\">\n<relations>\n");
     for (id, (kind, refs)) in relations.iter().enumerate() {
         let order = if kind.contains("order") || kind.contains("step") { " order=\"1\"" } else { "" };
-        let refs: String = refs.iter().map(|(role, id)| format!("<ref id=\"{id}\" role=\"{role}\"/>")).collect();
+        let refs: Vec<String> = refs.iter().map(|(role, id)| format!("<ref id=\"{id}\" role=\"{role}\"/>")).collect();
+        let refs = refs.concat();
         text += &format!("<relation id=\"{}\"{order} type=\"{kind}\">{refs}</relation>\n", 100 + id);
     }
     text += "</relations>\n<components>\n";
     for (kind, id, attributes) in &components {
-        let attributes: String = attributes
+        let attributes: Vec<String> = attributes
             .iter()
             .map(|[name, unit, value]| format!("<attribute id=\"{name}\" unit=\"{unit}\">{value}</attribute>\n"))
             .collect();
-        text += &format!("<component id=\"{id}\" type=\"{kind}\">\n{attributes}</component>\n");
+        text += &format!("<component id=\"{id}\" type=\"{kind}\">\n{}</component>\n", attributes.concat());
     }
     text + "</components>\n</model>\n"
 }
