@@ -44,7 +44,9 @@ fn identifier(word: &str) -> Result<String, String> {
     if let Some(known) = known.into_iter().find(|known| known.eq_ignore_ascii_case(name)) {
         return Ok(format!("{known}{later}"));
     }
-    let near = nearest(word, licenses());
+    // `CC-BY-4` is version 4.0; a name with other digits is another licence.
+    let version = |license: &&str| license.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'));
+    let near = licenses().find(version).or_else(|| nearest(word, licenses()));
     let help = near.map_or_else(|| "for example `CC-BY-4.0`".to_owned(), |near| format!("did you mean `{near}`?"));
     Err(format!("`{word}` is no SPDX identifier of a licence; {help}"))
 }

@@ -21,7 +21,8 @@ use studygraph::study::{Settings, Study, named};
 pub(super) fn file(word: &Path) -> Result<PathBuf, Ending> {
     let is_name = word.components().count() == 1 && word.extension().is_none();
     let unread = |problem: std::io::Error| Ending::Usage(presence::unread(word)(problem));
-    if !is_name || presence::link_metadata(word).map_err(unread)?.is_some() {
+    // A folder of this name, often one beside `studies`, is no study.
+    if !is_name || presence::link_metadata(word).map_err(unread)?.is_some_and(|found| !found.is_dir()) {
         return Ok(word.to_owned());
     }
     let name = word.to_string_lossy();

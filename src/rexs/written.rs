@@ -205,9 +205,21 @@ impl RexsPair<'_> {
                 ("density", gear.density, " kg/m^3"),
             ];
             text.group(", material: { ", &material, " }");
+            let steel = ["modulus_of_elasticity (206 GPa", "poisson_ratio (0.3"];
+            for ((_, said, _), usual) in material.into_iter().zip(steel) {
+                if said.is_none() {
+                    text.missing.push(format!("{usual} stands for it) of the {name}"));
+                }
+            }
+            if gear.tip_diameter.is_none() {
+                text.missing.push(format!("tip_diameter of the {name} (it follows from the rack's addendum)"));
+            }
             text.put(" }\n");
         }
         text.field("    ", "centre_distance", self.centre_distance, " mm\n");
+        if self.centre_distance.is_none() {
+            text.missing.push("center_distance (that without backlash stands for it)".to_owned());
+        }
         if let [Some(upper), Some(lower)] = self.centre_distance_allowance {
             let fields = [("upper", Some(upper), " mm"), ("lower", Some(lower), " mm")];
             text.group("    centre_distance_allowance: { ", &fields, " }\n");

@@ -322,7 +322,13 @@ fn a_wanted_accuracy_is_met_by_searches_curves_and_stiffness() {
         "{:?}",
         ran["hopeless"].warnings
     );
-    assert!(ran["ring"].warnings.is_empty() && ran["wish"].warnings.is_empty());
+    // The accuracy is that of the sampling; corners that the model leaves out are another error, and are reported.
+    let of_accuracy = |stage: &str| {
+        let warnings = ran[stage].warnings.iter().filter(|warning| !warning.contains("`corner_contact` is `none`"));
+        warnings.cloned().collect::<Vec<_>>()
+    };
+    assert!(of_accuracy("ring").is_empty() && of_accuracy("wish").is_empty(), "{:?}", of_accuracy("wish"));
     // Without end relief it is better, which the search says.
-    assert!(ran["search"].warnings.iter().all(|warning| warning.starts_with("a simpler design is as good")));
+    let search = of_accuracy("search");
+    assert!(search.iter().all(|warning| warning.starts_with("a simpler design is as good")), "{search:?}");
 }

@@ -169,7 +169,8 @@ fn what_is_not_determined_and_what_cannot_be_is_said() {
         (parameters.floats("value")[0] - bound).abs() < 1e-9 && parameters.floats("standard_deviation")[0].is_nan()
     );
     assert!(
-        said(&found).starts_with("no values within the bounds meet all within their tolerances; the nearest leave one")
+        said(&found)
+            .starts_with("no search ended at values that meet all within their tolerances; the nearest leave one")
     );
     assert!(said(&found).contains("`bore` is held at its bound"), "{}", said(&found));
 }

@@ -7,12 +7,30 @@ use std::fs::{self, FileType, Metadata};
 use std::io::{self, ErrorKind};
 use std::path::{Component, Path, PathBuf};
 
-/// The metadata of a path, through links; none where there is nothing, or a link that leads nowhere.
+/// The metadata of a path, through links; none where there is nothing.
 ///
 /// # Errors
-/// When the system cannot say whether it is there.
+/// When the system cannot say whether it is there; when a link on the way leads nowhere, as one to a disk that is not mounted does.
 pub fn metadata(path: &Path) -> io::Result<Option<Metadata>> {
-    found(fs::metadata(path))
+    let found = found(fs::metadata(path))?;
+    if found.is_none() {
+        check_links(path)?;
+    }
+    Ok(found)
+}
+
+/// # Errors
+/// When the nearest part of a path that is there is a link that leads nowhere.
+fn check_links(path: &Path) -> io::Result<()> {
+    for part in path.ancestors().filter(|part| !part.as_os_str().is_empty()) {
+        if let Some(own) = found(fs::symlink_metadata(part))? {
+            if own.is_symlink() && found(fs::metadata(part))?.is_none() {
+                return Err(io::Error::other(format!("the link `{}` leads nowhere", part.display())));
+            }
+            break;
+        }
+    }
+    Ok(())
 }
 
 /// The same of a link itself.
@@ -61,6 +79,9 @@ pub fn entries(folder: &Path) -> io::Result<Vec<(PathBuf, FileType)>> {
         Err(error) if error.kind() == ErrorKind::NotADirectory && exists(folder)? => return Err(error),
         read => found(read)?,
     };
+    if read.is_none() {
+        check_links(folder)?;
+    }
     for entry in read.into_iter().flatten() {
         let entry = entry?;
         // None: removed since the folder was read.
@@ -121,6 +142,20 @@ mod tests {
         assert!(entries(&file.join("below")).unwrap().is_empty() && entries(&file).is_err());
         let names: Vec<PathBuf> = entries(folder.path()).unwrap().into_iter().map(|(path, _)| path).collect();
         assert_eq!(names, [file]);
+    }
+
+    /// A disk that is not mounted does not make the results on it vanish.
+    #[cfg(unix)]
+    #[test]
+    fn a_link_that_leads_nowhere_is_an_error() {
+        let folder = tempfile::tempdir().unwrap();
+        let link = folder.path().join("link");
+        std::os::unix::fs::symlink(folder.path().join("gone"), &link).unwrap();
+        for path in [link.clone(), link.join("below"), link.join("far/below")] {
+            assert!(exists(&path).unwrap_err().to_string().contains("leads nowhere"), "{}", path.display());
+            assert!(entries(&path).is_err());
+        }
+        assert!(link_metadata(&link).unwrap().is_some());
     }
 
     /// A link to itself: an error for every user, root included.

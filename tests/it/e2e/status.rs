@@ -234,7 +234,7 @@ fn what_is_no_file_is_refused_at_once() {
         replace(&table, &rows);
     }
     pipe(&desk.path("a.zip"));
-    refused(&["verify", "a.zip"], 1, "it is not a file");
+    refused(&["verify", "a.zip"], 1, "it is neither a file nor a folder");
     fs::create_dir(desk.path("studies")).unwrap();
     pipe(&desk.path("studies/pipe.yaml"));
     refused(&["status"], 1, "there are no studies");

@@ -19,16 +19,19 @@ const MAY: &[(&str, usize, &str)] = &[
     ("crates/studygraph/src/runner/ownership.rs", 1, "what is not recorded is not compared"),
     ("crates/studygraph/src/store/cache.rs", 1, "a use that is not noted makes an entry look older"),
     ("crates/studygraph/src/store/cache/packs.rs", 1, "an entry that is not found is computed again"),
-    ("crates/studygraph/src/store/facts.rs", 2, "what cannot be read is left to git"),
-    ("crates/studygraph/src/store/file.rs", 1, "the next run removes the leftovers"),
+    ("crates/studygraph/src/git.rs", 2, "what cannot be read is left to git, which says why"),
+    ("crates/studygraph/src/store/archive/open.rs", 1, "a file that cannot be read is opened, which reports it"),
+    ("crates/studygraph/src/store/facts.rs", 1, "what cannot be read is left to git"),
+    ("crates/studygraph/src/store/file.rs", 3, "the next run removes the leftovers"),
     ("crates/studygraph/src/store/index.rs", 1, "without the index every file is read"),
     ("crates/studygraph/src/store/results.rs", 2, "a fault that was found is reported without a second look"),
     ("crates/studygraph/src/store/results/publish.rs", 1, "an index that is not refreshed costs reading"),
     ("src/cli/complete.rs", 1, "completion has nobody to report to"),
     ("src/cli/diff.rs", 2, "names to suggest; folders to lock, which are compared all the same"),
     ("src/cli/run.rs", 1, "a cache that cannot be read is opened, which reports it"),
-    ("src/cli/serve.rs", 1, "a browser is answered that there is no such page"),
-    ("src/cli/watch.rs", 2, "the study is loaded, which reports it; a page that cannot be read is not shown"),
+    ("src/cli/scratch.rs", 2, "the next run removes the leftovers"),
+    ("src/cli/serve.rs", 3, "a browser is answered that there is no such page"),
+    ("src/cli/watch.rs", 3, "the study is loaded, which reports it; a page that cannot be read is not shown"),
 ];
 
 const QUESTIONS: &[&str] = &["presence::", "metadata(", "canonicalize("];

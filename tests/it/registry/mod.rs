@@ -207,7 +207,13 @@ fn the_runner_gives_what_a_plain_walk_through_the_stages_gives() {
         let plain = walk(&study);
         let mut compared = 0;
         for stage in &outcome.stages {
-            assert_eq!(stage.warnings, plain[&stage.name].warnings, "{}", stage.name);
+            // Chunks report their worst cases, a stage by itself the worst of all.
+            let without_count = |warnings: &[String]| -> Vec<String> {
+                let shown =
+                    |warning: &String| warning.split(". This is the worst of ").next().unwrap_or_default().to_owned();
+                warnings.iter().map(shown).collect()
+            };
+            assert_eq!(without_count(&stage.warnings), without_count(&plain[&stage.name].warnings), "{}", stage.name);
             for (schema, _) in &stage.tables {
                 let table = outcome.table(&cache, &stage.name, &schema.name).unwrap();
                 let other = plain[&stage.name].tables.iter().find(|other| other.name() == schema.name).unwrap();

@@ -146,9 +146,9 @@ fn results_are_named_where_results_cannot_be_written() {
     fs::write(desk.path("file"), "").unwrap();
     let (_, error) = desk.run(&["run", "tiny.yaml", "--cache", "file/cache", "--results", "file/results"], 1);
     let told = warnings(&error);
-    assert_eq!(told.len(), 2, "{error}");
-    assert!(told[0].contains("warning") && told[0].contains("file/cache"), "{error}");
-    assert!(told[1].contains("file/results") && !told[1].contains("file/cache"), "{error}");
+    // Nothing is computed that could not be published.
+    let [only] = &told[..] else { panic!("{error}") };
+    assert!(only.contains("file/results") && !only.contains("file/cache"), "{error}");
 }
 
 /// Pipes, devices and folders where files should be: no wait, no end, and what is somebody's stays.

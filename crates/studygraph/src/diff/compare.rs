@@ -5,6 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use super::manifests::{Read, read};
 use super::model::{Comparison, Damage, Difference, Flip, StageDiff, StudyDiff, TableDiff};
 use super::renamed::ManifestPair;
 use super::{curves, renamed, table, verdict, why};
@@ -156,33 +157,6 @@ fn damaged(pair: &ManifestPair, before: &Side, after: &Side, options: &Options<'
         }
     }
     (found, remarks)
-}
-
-/// The manifest in a folder of a side, or the reason for which it cannot be read; the study's name first.
-type Read = (String, String, Result<Manifest, String>);
-
-/// The studies of a side that are asked for, and those that are not `there` on the other side: one may have another name here.
-fn read(side: &Side, there: &Side, options: &Options<'_>) -> Result<Vec<Read>, String> {
-    let folders = side.studies()?;
-    if folders.is_empty() {
-        return Err(format!("there are no results at {}", side.label));
-    }
-    let others = there.studies()?;
-    let is_wanted = |folder: &String| {
-        options.studies.is_empty()
-            || side.is_single()
-            || options.studies.contains(folder)
-            || !there.is_single() && !others.contains(folder)
-    };
-    let read = folders.into_iter().filter(is_wanted).filter_map(|folder| {
-        let manifest = side.manifest(&folder).transpose()?;
-        let name = match &manifest {
-            Ok(manifest) if side.is_single() => manifest.study.clone(),
-            _ => folder.clone(),
-        };
-        Some((name, folder, manifest))
-    });
-    Ok(read.collect())
 }
 
 fn pairs(

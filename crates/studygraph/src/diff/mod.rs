@@ -8,6 +8,7 @@ mod columns;
 pub mod compare;
 pub mod curves;
 pub mod html;
+mod manifests;
 pub mod markdown;
 pub mod model;
 pub mod pretty;

@@ -105,7 +105,7 @@ pub fn fields(text: &str, conditions: &[Condition]) -> Result<(Vec<KeyValue>, Pl
     }
     decimals.check_thousands()?;
     if averaged > 1 {
-        average(&columns, &mut lists, averaged, header)?;
+        average(&columns, &mut lists, averaged)?;
     }
     let said = pairs.len();
     for (column, (items, place)) in columns.iter().zip(lists).filter(|(column, _)| !column.is_key) {

@@ -130,14 +130,11 @@ fn listed(values: &[&str]) -> String {
 }
 
 /// Replaces lists of so many teeth by their average, place by place.
-pub(super) fn average(
-    columns: &[Column],
-    lists: &mut [(Vec<Node>, Place)],
-    teeth: usize,
-    header: Place,
-) -> Result<(), Diagnostic> {
-    let mut is_placed = false;
-    for ((items, _), column) in lists.iter_mut().zip(columns).filter(|(_, column)| !column.is_key) {
+pub(super) fn average(columns: &[Column], lists: &mut [(Vec<Node>, Place)], teeth: usize) -> Result<(), Diagnostic> {
+    let last = columns.iter().rposition(|column| !column.is_key);
+    for (index, ((items, _), column)) in
+        lists.iter_mut().zip(columns).enumerate().filter(|(_, (_, column))| !column.is_key)
+    {
         let numbers: Option<Vec<f64>> = items.iter().map(number).collect();
         let Some(numbers) = numbers.filter(|numbers| numbers.iter().all(|number| number.is_finite())) else {
             let message = format!("the column {} has no average: not all of it are numbers", quote(column.name.text));
@@ -149,7 +146,13 @@ pub(super) fn average(
             numbers.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(*value), b.max(*value)));
         let is_same_place =
             |point: usize| of(point).all(|at| (numbers[at] - numbers[point]).abs() <= SAME_PLACE * (largest - least));
-        is_placed |= (0..count).all(is_same_place);
+        // Values of the last column are averaged; those before it say where.
+        if Some(index) != last && !(0..count).all(is_same_place) {
+            let message =
+                format!("the places in {} are not the same for all that are averaged", quote(column.name.text));
+            let help = "an average needs the same places for all of them, and the averaged values in the last column";
+            return Err(Diagnostic::new(message).at(column.name.place).help(help));
+        }
         for point in 0..count {
             #[allow(clippy::cast_precision_loss)] // no file has so many teeth
             let mean = of(point).map(|at| numbers[at]).sum::<f64>() / teeth as f64;
@@ -161,11 +164,7 @@ pub(super) fn average(
         }
         items.truncate(count);
     }
-    if is_placed {
-        return Ok(());
-    }
-    let help = "an average needs the same places for all of them: name one";
-    Err(Diagnostic::new("no column is the same for all that are averaged").at(header).help(help))
+    Ok(())
 }
 
 /// The number of a value, without its unit.

@@ -77,11 +77,6 @@ impl Found {
         let settled = meeting().filter(|solution| solution.is_settled()).count();
         settled.max(usize::from(meeting().next().is_some()))
     }
-
-    /// Whether inputs that a stage refuses ended any search.
-    pub fn is_at_edge(&self) -> bool {
-        self.solutions.iter().any(Solution::is_at_edge)
-    }
 }
 
 /// The starts: the values of the study, where they are in the box, and a point in each of as many strata of every parameter.

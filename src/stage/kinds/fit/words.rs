@@ -45,13 +45,9 @@ pub fn said(found: &Found, parameters: &[ParameterRow], flat: &str, refused: &st
     let best = &found.solutions[0];
     let meeting = found.meeting();
     let mut sentences = vec![match meeting {
-        // The sum of squares is least there, which does not exclude values along the edge that meet all.
-        0 if found.is_at_edge() => format!(
-            "no search ended at values that meet all within their tolerances; the nearest leave one {} tolerances off",
-            significant(best.largest(), 3)
-        ),
+        // Searches from some starts do not exclude that values elsewhere meet all.
         0 => format!(
-            "no values within the bounds meet all within their tolerances; the nearest leave one {} tolerances off",
+            "no search ended at values that meet all within their tolerances; the nearest leave one {} tolerances off",
             significant(best.largest(), 3)
         ),
         1 if flat.is_empty() => "one solution meets all within their tolerances".to_owned(),

@@ -8,6 +8,9 @@ use crate::study::words::{self, quote};
 use declare::error::{Diagnostic, suggest};
 use declare::units::{self, ForeignUnit, LENGTH, Quantity, RATIO, UnitError, parse_quantity, split_quantity};
 
+/// Letters from which on a unit is a word that may have a slip.
+const SPELLED_OUT: usize = 4;
+
 impl Measure<'_> {
     /// What to write for a quantity where a plain number stands. Another quantity is not that number without its unit.
     pub(super) fn without_unit(&self, text: &str, read: Quantity) -> String {
@@ -19,6 +22,13 @@ impl Measure<'_> {
             return format!("what is measured in {} is another quantity, not this number with a unit", quote(unit));
         };
         let name = quote(self.name);
+        // `1.25 m` is often written for 1.25 modules.
+        if split_quantity(text).1 == "m" {
+            let number = split_quantity(text).0;
+            return format!(
+                "{name} counts in `{field}`, and `m` is the metre; for {number} times the {field} write `{number}`"
+            );
+        }
         match unit.filter(|unit| *unit > 0.0) {
             Some(unit) => {
                 let (number, of) = (words::number(read.value / unit), words::quantity(unit, LENGTH));
@@ -67,6 +77,8 @@ impl Measure<'_> {
         let mut same = units::symbols().filter(|known| known.eq_ignore_ascii_case(symbol)).filter(fits);
         match (same.next(), same.next()) {
             (Some(only), None) => Some(only),
+            // Another letter of a short symbol is another unit: `mN` is a thousandth of a newton, and no slip for `kN`.
+            _ if symbol.len() < SPELLED_OUT => None,
             _ => declare::error::nearest(symbol, units::symbols().filter(fits)),
         }
     }
@@ -85,6 +97,10 @@ impl Measure<'_> {
                 let own = self.dimension.map_or::<&[&str], _>(&[], |dimension| dimension.describe().1);
                 Diagnostic::new(message).help(match self.near_symbol(text, &symbol) {
                     Some(near) => format!("did you mean `{near}`?"),
+                    None if symbol.len() < SPELLED_OUT && !own.is_empty() => {
+                        let own: Vec<String> = own.iter().map(|unit| quote(unit)).collect();
+                        format!("known here: {}", own.join(", "))
+                    }
                     None => suggest(&symbol, own.iter().copied()),
                 })
             }

@@ -139,7 +139,11 @@ fn one_of_several_teeth_is_chosen_or_all_are_averaged() {
         (text, "a.csv[tooth=7]", "1:1: no line has `7` in the column `tooth`; there are `1`, `6`"),
         (text, "a.csv[gear=7]", "1:1: there is no column `gear`"),
         ("tooth, x [mm]\n1,4\n1,5\n2,4\n", "a.csv[tooth=mean]", "1:1: there are 2 lines of `1` and 1 of `2`"),
-        ("tooth, x [mm]\n1,4\n1,5\n2,6\n2,9\n", "a.csv[tooth=mean]", "1:1: no column is the same for all"),
+        (
+            "tooth, x [mm], d [um]\n1,4,1\n1,5,1\n2,6,1\n2,9,1\n",
+            "a.csv[tooth=mean]",
+            "1:8: the places in `x` are not the same",
+        ),
         (flanks, "a.csv[tooth=1]", "1:1: the column `flank` has no unit"),
     ] {
         let said = of(text, name);

@@ -17,10 +17,12 @@ fn corners_touch_as_far_as_they_separate_by_the_approach() {
     assert!(LoadCase::new(&cycle, &relieved, 50.0).neglected_corners(39e-6).is_none(), "relief keeps the corners off");
 }
 
-/// Tier: second method; the estimate of what exact corner contact changes is between half of it and three times as much.
+/// Tier: second method; wherever exact corner contact changes the peak-to-peak by more than 2 %, the estimate of the change exceeds the
+/// 1 % from which on a stage computes the exact one. An estimate that is too large costs one curve.
 #[test]
-fn the_estimate_is_near_exact_corner_contact() {
+fn the_estimate_misses_no_corner_that_matters() {
     let (pair, none) = (pair(), Design::default());
+    let mut mattering = 0;
     for compliance in [varying(), coupled()] {
         let (cycle, corners) = (cycle(&pair, &compliance), exact(&pair, &compliance, 64));
         for torque in [20.0, 100.0, 500.0, 2000.0] {
@@ -30,7 +32,11 @@ fn the_estimate_is_near_exact_corner_contact() {
             let neglected = loading.neglected_corners(summary.largest.value).unwrap();
             let estimate = neglected.peak_to_peak(&points, loading.force);
             let (change, estimated) = (summary.peak_to_peak - with, summary.peak_to_peak - estimate);
-            assert!((0.5..3.0).contains(&(estimated / change)), "{torque}: {change:e}, estimated {estimated:e}");
+            if change.abs() > 0.02 * summary.peak_to_peak {
+                mattering += 1;
+                assert!(estimated.abs() > 0.01 * summary.peak_to_peak, "{torque}: {change:e}, estimated {estimated:e}");
+            }
         }
     }
+    assert!(mattering >= 2, "{mattering}");
 }
