@@ -170,8 +170,8 @@ fn summary_curve_and_map_tell_the_same() {
         }
         let warned = warnings(&outcome);
         // Each torque is a chunk of its own, and what they say is one.
-        let of_pressure = |text: &&String| !text.contains("`corner_contact` is `none`");
-        let [text] = &warned.iter().filter(of_pressure).collect::<Vec<_>>()[..] else { panic!("{warned:?}") };
+        let warned: Vec<_> = warned.into_iter().filter(|text| !text.contains("`corner_contact` is `none`")).collect();
+        let [text] = &warned[..] else { panic!("{warned:?}") };
         let resolved = stiffness == RESOLVED;
         let told = rows(&tables[0], "crowned", 50.0).into_iter().chain(rows(&tables[0], "crowned", 100.0));
         let told = told.chain(rows(&tables[0], "unmodified", 50.0)).chain(rows(&tables[0], "unmodified", 100.0));

@@ -233,13 +233,14 @@ fn two_versions_of_a_study_in_one_folder_never_look_damaged() {
         assert!(!bad.iter().any(|word| said.contains(word)), "{what}: {said}");
         output.status.code().unwrap_or(-1)
     };
+    let report = [&["report"][..], &two].concat();
     let done = AtomicBool::new(false);
     std::thread::scope(|scope| {
         for words in [
             &["status", "quick.yaml"][..],
             &["table", "quick.yaml", "ste.summary"],
             &["diff", "results", "results"],
-            &[&["report"][..], &two].concat(),
+            &report,
         ] {
             let (done, start, ended) = (&done, &start, &ended);
             scope.spawn(move || {
