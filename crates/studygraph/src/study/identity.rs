@@ -94,7 +94,7 @@ mod tests {
             "title: x\nstudy: q  # which one\n",
             "# study: other\nstudy: \"q\"\n",
             "{ \"study\": \"q\", \"stages\": {} }",
-            "title: \"a\nstudy: other\"\nstudy: q\n",
+            "title: \"a\n  study: other\"\nstudy: q\n",
             "study:\n  q\n",
             "study: q\nstages: [",
         ] {

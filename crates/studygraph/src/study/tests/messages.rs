@@ -19,7 +19,7 @@ const CHANGES: &[(&str, &str, &str)] = &[
     (
         "module: 3 mm",
         "module: 3 nn",
-        "8:13: unknown unit `nn` in `3 nn`; a length (for example `3 mm`) is expected\n  help: did you mean `nm`?",
+        "8:13: unknown unit `nn` in `3 nn`; a length (for example `3 mm`) is expected\n  help: known here: `mm`, `um`, `m`",
     ),
     (
         "module: 3 mm",
