@@ -39,8 +39,9 @@ fn made(root: &Path) -> io::Result<Scratch> {
         let folder = Builder::new().prefix(PREFIX).tempdir_in(root)?;
         let lock = match locked(folder.path()) {
             Ok(lock) => Some(lock),
-            // Another run takes it for one that was left, as it is not locked yet.
+            // Another run takes it for one that was left, as it is not locked yet, or has removed it already.
             Err(TryLockError::WouldBlock) => continue,
+            Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::NotFound => continue,
             // Where there are no locks, nothing is known of other folders either.
             Err(TryLockError::Error(_)) => return Ok(Scratch { folder, _lock: None }),
         };
@@ -114,5 +115,23 @@ mod tests {
         assert!(!all.contains(&"gearstudy-left".to_owned()) && living.path().is_dir() && next.path().is_dir());
         drop((living, next));
         assert_eq!(names(root.path()).len(), 3);
+    }
+
+    /// A folder is new for a moment before it is locked.
+    #[cfg(unix)]
+    #[test]
+    fn runs_that_begin_at_once_leave_each_other_their_folders() {
+        let root = tempfile::tempdir().unwrap();
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| {
+                    for _ in 0..2000 {
+                        let one = made(root.path()).unwrap();
+                        assert!(one.path().is_dir());
+                    }
+                });
+            }
+        });
+        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 0);
     }
 }

@@ -53,6 +53,12 @@ impl Slurm {
         command
     }
 
+    /// How each job ended, and what the controller said of them.
+    fn ended(&self) -> String {
+        let file = |name: &str| fs::read_to_string(self.folder.path().join(name)).unwrap_or_default();
+        format!("{}\n{}", file("jobcomp.txt"), file("log/slurmctld.log"))
+    }
+
     fn ask(&self, program: &str, words: &[&str]) -> String {
         let output = self.command(program, words).output().unwrap();
         assert!(output.status.success(), "{program} {words:?}: {}", String::from_utf8_lossy(&output.stderr));
@@ -158,6 +164,6 @@ fn detached(slurm: &Slurm) {
     assert!(output.status.success() && said.contains("submitted: jobs ") && said.contains(" for the merge"), "{said}");
     until("the merge is done", || slurm.ask("squeue", &["--noheader"]).is_empty());
     let log = fs::read_to_string(desk.path("plan/logs/merge.log")).unwrap_or_default();
-    assert!(desk.path("results/swept/report.html").exists(), "{log}");
+    assert!(desk.path("results/swept/report.html").exists(), "{log}\n{}", slurm.ended());
     assert_as_local(&desk);
 }
