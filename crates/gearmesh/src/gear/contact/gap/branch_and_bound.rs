@@ -1,33 +1,34 @@
-//! The least gap of flanks that bend back, by branch and bound.
+//! Global minimum of the gap between flanks that are not convex, by branch and bound.
 //!
-//! Both flanks are cut where one of them has a kink. Between two cuts the second derivative of S + C1 + C2 over the distance from the nominal
-//! point has a lower bound, since those of S and of both depths have one. Where the bound is not negative the gap is convex, and Newton's method
-//! leads to its least place. Else the gap is nowhere lower than the convex function that is less by the product of the distances from both ends times
-//! half of the bound (αBB: Adjiman et al., Computers & Chemical Engineering 22, 1998). What cannot be lower than the least gap so far is left out,
-//! the rest is halved. Must not know: load.
+//! The search cuts the path at every kink of either flank. Between two cuts the second derivative of the gap S + C1 + C2 over the distance e from
+//! the nominal point has a lower bound β, the sum of the bounds for S and for both depths. If β ≥ 0 the gap is convex, and Newton's method finds its
+//! minimum. Otherwise the gap plus β/2 (e − e1)(e2 − e) is a convex underestimator on [e1, e2] (αBB: Adjiman et al., Computers & Chemical
+//! Engineering 22, 1998). The search discards intervals whose underestimator does not fall below the smallest gap found, and bisects the others.
+//! Must not know: load.
 //!
-//! Assumes that d²S/de² and df/de are between their values at both ends of a stretch, and d²f/de² nearly so; `the_separation_stays_within_its_bounds` tests it.
+//! Assumes that d²S/de² and df/de lie between their values at both ends of an interval, and d²f/de² within [`RATE_SLOPE_MARGIN`] of them;
+//! `the_separation_stays_within_its_bounds` tests it.
 
-use super::outline::{Below, Cells};
+use super::outline::{Cells, Underestimator};
 use super::{PieceLocation, Spot, Way};
 use crate::gear::contact::separation::Touch;
 
-/// By how much lower a place must be to be looked for, over the length of the path.
-const TOLERANCE: f64 = 1e-14;
-/// Where a stretch is not halved any more, over the length of the path.
-const CLOSEST: f64 = 1e-10;
-/// By how much of itself d²f/de² may be beyond its values at both ends of a stretch, over the square of the share by which df/de falls there.
-pub(super) const MORE: f64 = 0.5;
-/// The most steps of Newton's method and of halving.
-const MOST_STEPS: usize = 64;
+/// Absolute tolerance of the smallest gap, as a share of the length of the path of contact.
+const GAP_TOLERANCE: f64 = 1e-14;
+/// Shortest interval that is bisected, as a share of the length of the path of contact.
+const SHORTEST_INTERVAL: f64 = 1e-10;
+/// Largest relative excess of d²f/de² inside an interval over its values at both ends, per square of the relative change of df/de.
+pub(super) const RATE_SLOPE_MARGIN: f64 = 0.5;
+/// Limit on the steps of Newton's method and of bisection together.
+const MAX_STEPS: usize = 64;
 
-/// A place of the point before the flank.
+/// A position of the point in front of the flank, with the values and derivatives of both profiles.
 #[derive(Clone, Copy, Debug)]
 struct Place {
-    /// How far it is before its own position.
+    /// Distance e from the nominal point \[m\].
     at: f64,
     touch: Touch,
-    /// Depth, slope and bend of the point's profile over its position, and of the flank's over its own.
+    /// Depth and its first two derivatives: the point's over its path position, the flank's over its radius of curvature.
     point: [f64; 3],
     flank: [f64; 3],
     cells: [usize; 2],
@@ -48,18 +49,18 @@ impl Place {
     }
 }
 
-/// A search over one way at one path position.
+/// A search in one direction at one path position.
 pub(super) struct Search<'a, 'b> {
     way: &'b Way<'a>,
     cells: [&'b Cells; 2],
     nominal: f64,
     tolerance: f64,
-    closest: f64,
+    shortest: f64,
     minimum: (f64, Spot),
 }
 
 impl<'a, 'b> Search<'a, 'b> {
-    /// The least of `minimum` and of all places farther than `before` from the nominal point.
+    /// The smaller of `minimum` and of the gap at all distances beyond `before` from the nominal point.
     pub(super) fn least(
         way: &'b Way<'a>,
         nominal: f64,
@@ -68,8 +69,9 @@ impl<'a, 'b> Search<'a, 'b> {
         minimum: (f64, Spot),
     ) -> (f64, Spot) {
         let cells = [way.point.cells(), way.flank.cells()];
-        let [tolerance, closest] = [TOLERANCE, CLOSEST].map(|share| share * (way.facing.end - way.facing.start));
-        let mut search = Self { way, cells, nominal, tolerance, closest, minimum };
+        let [tolerance, shortest] =
+            [GAP_TOLERANCE, SHORTEST_INTERVAL].map(|share| share * (way.facing.end - way.facing.start));
+        let mut search = Self { way, cells, nominal, tolerance, shortest, minimum };
         search.run(before, touch);
         search.minimum
     }
@@ -85,7 +87,7 @@ impl<'a, 'b> Search<'a, 'b> {
         }
     }
 
-    /// A place among these cells.
+    /// The place at a distance `at` that lies within these cells.
     fn inside(&self, at: f64, [point, flank]: [[usize; 2]; 2]) -> Place {
         let touch = self.way.facing.touch(self.nominal + at, at);
         let cells = [self.cells[0].cell(self.nominal + at, point), self.cells[1].cell(touch.curvature, flank)];
@@ -107,7 +109,7 @@ impl<'a, 'b> Search<'a, 'b> {
         ];
         let (mut at, mut touch) = (before, touch);
         loop {
-            // The separation only grows.
+            // The separation grows monotonically.
             if touch.separation + point.least_from(cells[0]) + flank.least_from(cells[1])
                 >= self.minimum.0 - self.tolerance
             {
@@ -122,7 +124,7 @@ impl<'a, 'b> Search<'a, 'b> {
             let [from, to] = [self.place(at, touch, cells), self.place(end, at_end, last)];
             cells = [0, 1].map(|of| if ended[of] { corners[of] } else { last[of] });
             let goes_on = cells[0] < point.count() && cells[1] < flank.count();
-            // A profile is as deep on both sides of a corner but for rounding, which a steep one makes much of.
+            // Rounding differs between both sides of a corner, notably where the profile is steep.
             let behind = if goes_on { self.place(end, at_end, cells).gap() } else { f64::INFINITY };
             let place = if ended[1] { PieceLocation::EndOfFlank } else { PieceLocation::EndOfPoint };
             self.offer(to.gap().min(behind), last, place);
@@ -134,7 +136,7 @@ impl<'a, 'b> Search<'a, 'b> {
         }
     }
 
-    /// The nearer one of the positions at which the point's profile and the flank's have their next corners.
+    /// The nearer of the next corners of the point's profile and of the flank's.
     fn next_cut(&self, from: f64, touch: &Touch, [cut, wall]: [f64; 2]) -> (f64, Touch, [bool; 2]) {
         let last = (cut - self.nominal).max(from);
         let facing = &self.way.facing;
@@ -142,7 +144,7 @@ impl<'a, 'b> Search<'a, 'b> {
         if at_last.curvature <= wall {
             return (last, at_last, [true, false]);
         }
-        // Half the square of the curvature is almost straight in the distance.
+        // Newton on the square of the radius of curvature, which is almost linear in the distance.
         let (mut at, mut there) = (from, *touch);
         for _ in 0..30 {
             let step = (wall * wall - there.curvature * there.curvature) / (2.0 * there.curvature * there.rate);
@@ -156,19 +158,19 @@ impl<'a, 'b> Search<'a, 'b> {
         (at, there, [false, true])
     }
 
-    /// Searches between two places with no corner in between, whose gaps are known.
+    /// Searches an interval without a corner inside, whose end values are already offered.
     fn branch(&mut self, from: &Place, to: &Place) {
         let width = to.at - from.at;
         let cells = [0, 1].map(|of| [from.cells[of], to.cells[of]]);
         let least = self.cells[0].least(cells[0]) + self.cells[1].least(cells[1]);
-        if from.touch.separation + least >= self.minimum.0 - self.tolerance || width <= self.closest {
+        if from.touch.separation + least >= self.minimum.0 - self.tolerance || width <= self.shortest {
             return;
         }
-        let below = self.bound(from, to, cells);
-        if below.least([from.gap(), to.gap()], width) >= self.minimum.0 - self.tolerance {
+        let under = self.bound(from, to, cells);
+        if under.least([from.gap(), to.gap()], width) >= self.minimum.0 - self.tolerance {
             return;
         }
-        if below.bend >= 0.0 && below.is_exact {
+        if under.bend >= 0.0 && under.is_exact {
             self.descend(*from, *to);
             return;
         }
@@ -178,24 +180,24 @@ impl<'a, 'b> Search<'a, 'b> {
         self.branch(&middle, to);
     }
 
-    /// What the gap is no less than between two places.
-    fn bound(&self, from: &Place, to: &Place, cells: [[usize; 2]; 2]) -> Below {
+    /// A convex underestimator of the gap between two places.
+    fn bound(&self, from: &Place, to: &Place, cells: [[usize; 2]; 2]) -> Underestimator {
         let along = [from.touch.curvature, to.touch.curvature];
         let own = [from, to].map(|place| self.nominal + place.at);
-        let point = self.cells[0].below(&self.way.point, cells[0], own, [&from.point, &to.point]);
-        let flank = self.cells[1].below(&self.way.flank, cells[1], along, [&from.flank, &to.flank]);
+        let point = self.cells[0].underestimator(&self.way.point, cells[0], own, [&from.point, &to.point]);
+        let flank = self.cells[1].underestimator(&self.way.flank, cells[1], along, [&from.flank, &to.flank]);
         let [rate, rate_slope] = [[from.touch.rate, to.touch.rate], [from.touch.rate_slope, to.touch.rate_slope]];
         let stretched = if flank.bend < 0.0 { rate[0].max(rate[1]) } else { rate[0].min(rate[1]) };
-        // Between which slopes the flank's profile stays.
+        // Bounds of the slope of the flank's profile.
         let beyond = (-flank.bend).max(0.0) * (along[1] - along[0]);
         let [one, other] = flank.slopes;
-        // The rate may bend more in between than at both ends, by second order in how far they are from each other.
+        // d²f/de² may leave the range of its end values, to second order in the length of the interval.
         let share = 1.0 - rate[0].min(rate[1]) / rate[0].max(rate[1]).max(f64::MIN_POSITIVE);
-        let more = MORE * share * share * rate_slope[0].abs().min(rate_slope[1].abs());
+        let more = RATE_SLOPE_MARGIN * share * share * rate_slope[0].abs().min(rate_slope[1].abs());
         let rate_slopes = [rate_slope[0].min(rate_slope[1]) - more, rate_slope[0].max(rate_slope[1]) + more];
         let turned = [one.min(other) - beyond, one.max(other) + beyond]
             .map(|slope| (slope * rate_slopes[0]).min(slope * rate_slopes[1]));
-        Below {
+        Underestimator {
             bend: from.touch.bend.min(to.touch.bend)
                 + point.bend
                 + flank.bend * stretched * stretched
@@ -208,11 +210,11 @@ impl<'a, 'b> Search<'a, 'b> {
         }
     }
 
-    /// Down to the least place of a convex stretch, from both ends of which the gap falls.
+    /// The minimum of a convex interval whose gap falls inward from both ends, by safeguarded Newton steps.
     fn descend(&mut self, mut low: Place, mut high: Place) {
         let cells = [0, 1].map(|of| [low.cells[of], high.cells[of]]);
         let mut nearer = if low.slope().abs() < high.slope().abs() { low } else { high };
-        for step in 0..MOST_STEPS {
+        for step in 0..MAX_STEPS {
             let newton = -nearer.slope() / nearer.bend();
             let next = nearer.at + newton;
             let next = if next > low.at && next < high.at && step % 4 != 3 { next } else { 0.5 * (low.at + high.at) };
@@ -221,7 +223,7 @@ impl<'a, 'b> Search<'a, 'b> {
             }
             nearer = self.inside(next, cells);
             let (gap, slope, bend) = (nearer.gap(), nearer.slope(), nearer.bend());
-            // On the side to which it falls it bends no less than this, and falls no more than a parabola that bends so.
+            // A parabola of the least curvature on the falling side bounds the remaining descent.
             let [from, to] = if slope < 0.0 { [&nearer, &high] } else { [&low, &nearer] };
             let least_bend = self.bound(from, to, [0, 1].map(|of| [from.cells[of], to.cells[of]])).bend;
             if least_bend > 0.0 && 0.5 * slope * slope <= self.tolerance * least_bend {
@@ -230,8 +232,8 @@ impl<'a, 'b> Search<'a, 'b> {
             }
             self.offer(gap, nearer.cells, PieceLocation::Inside);
             *(if slope < 0.0 { &mut low } else { &mut high }) = nearer;
-            let below = Below { bend: 0.0, slopes: [low.slope(), high.slope()], is_exact: true };
-            if below.least([low.gap(), high.gap()], high.at - low.at) >= self.minimum.0 - self.tolerance {
+            let under = Underestimator { bend: 0.0, slopes: [low.slope(), high.slope()], is_exact: true };
+            if under.least([low.gap(), high.gap()], high.at - low.at) >= self.minimum.0 - self.tolerance {
                 return;
             }
         }

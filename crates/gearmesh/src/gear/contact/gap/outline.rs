@@ -10,7 +10,7 @@ use crate::numeric::spline::Spline;
 mod bends;
 mod cells;
 mod known;
-pub(super) use cells::{Below, Cells};
+pub(super) use cells::{Cells, Underestimator};
 use known::Known;
 
 /// Samples of a piece that may be a wave: enough for sixteen humps.
@@ -251,15 +251,14 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// What the profile is no less than between two positions on a piece and between its knots. The second derivative of each part is taken to be
-    /// monotone there, as those of powers and cubics are; a part that bends back without bound, as a power below 1 does where it starts, is no less
-    /// than its chord.
-    fn below(&self, piece: usize, ends: [f64; 2]) -> Below {
+    /// An underestimator of the profile between two positions on a piece that has no knot in between. The second derivative of each part counts as
+    /// monotone there, as it is for powers and cubics. The chord replaces a part whose second derivative has no bound, as a power below 1 at its start.
+    fn underestimator(&self, piece: usize, ends: [f64; 2]) -> Underestimator {
         let (chord, [_, rate]) = (1.0 / (ends[1] - ends[0]), self.rolls);
         let rolls = ends.map(|end| self.roll(end));
         let inside = self.roll(0.5 * (self.cuts[piece] + self.cuts[piece + 1]));
         let of_parts =
-            self.parts.iter().try_fold(Below { bend: 0.0, slopes: [0.0; 2], is_exact: true }, |sum, part| {
+            self.parts.iter().try_fold(Underestimator { bend: 0.0, slopes: [0.0; 2], is_exact: true }, |sum, part| {
                 let rates = [part.rates(rolls[0], inside)?, part.rates(rolls[1], inside)?];
                 let bend = rates[0][2].min(rates[1][2]) * rate * rate;
                 let is_exact = bend.is_finite();
@@ -268,7 +267,7 @@ impl<'a> Outline<'a> {
                 } else {
                     [(rates[1][0] - rates[0][0]) * chord; 2]
                 };
-                Some(Below {
+                Some(Underestimator {
                     bend: sum.bend + if is_exact { bend } else { 0.0 },
                     slopes: [sum.slopes[0] + slopes[0], sum.slopes[1] + slopes[1]],
                     is_exact: sum.is_exact && is_exact,
@@ -278,7 +277,7 @@ impl<'a> Outline<'a> {
             let rates: [[f64; 3]; SAMPLES + 1] =
                 std::array::from_fn(|at| self.sampled_rates(share(&ends, at, SAMPLES), piece));
             let least = rates.iter().map(|rates| rates[2]).fold(0.0, f64::min);
-            Below { bend: 2.0 * least, slopes: [rates[0][1], rates[SAMPLES][1]], is_exact: true }
+            Underestimator { bend: 2.0 * least, slopes: [rates[0][1], rates[SAMPLES][1]], is_exact: true }
         })
     }
 

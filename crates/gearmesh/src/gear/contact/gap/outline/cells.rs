@@ -1,60 +1,60 @@
-//! A profile in cells, each a cubic or another curve, with lower bounds for a search by branch and bound.
+//! A profile split into cells, each a cubic or another curve, with lower bounds for branch and bound.
 //!
-//! Must not know: the other flank, how places are searched.
+//! Must not know: the other flank, the search.
 
 use super::{Outline, share};
 
-/// Cells of a piece that is no cubic.
+/// Number of cells of a piece that is not a cubic.
 const CURVED_CELLS: usize = 8;
 /// Shares of a cell at which a cubic is fitted, and at which it must agree with the profile.
 const FITTED: [f64; 4] = [0.1, 0.35, 0.65, 0.9];
 const CHECKED: [f64; 3] = [0.02, 0.5, 0.98];
-/// By how much of the largest depth of a cell a cubic may be off.
+/// Largest error of a fitted cubic, as a share of the largest depth of its cell.
 const CUBIC_TOLERANCE: f64 = 1e-12;
-/// By how much of the largest slope of a profile slopes of two cells may differ by rounding where they meet.
+/// Largest jump of slope that counts as rounding, as a share of the largest slope of the profile.
 const SLOPE_TOLERANCE: f64 = 1e-10;
-/// Cells in a block, of which least values are known together.
+/// Number of cells in a block, whose lower bounds are stored together.
 const BLOCK: usize = 16;
 
-/// All cells between the ends of a flank.
+/// All cells of a flank, in order of position.
 #[derive(Clone, Debug, Default)]
 pub(in super::super) struct Cells {
-    /// Where each begins, and the last one ends, ascending.
+    /// The start of each cell and the end of the last, ascending.
     ends: Vec<f64>,
     curves: Vec<Cell>,
-    /// Whether the profile has a kink, or is not known to be smooth, where each begins or the last one ends.
+    /// True where the profile has a kink, or where smoothness is unknown; one entry for each of `ends`.
     corners: Vec<bool>,
-    /// Lower bounds of the depth and of its second derivative at the beginning of each cell, over blocks of cells.
+    /// Lower bounds of depth and of second derivative over blocks of cells.
     blocks: Vec<[f64; 2]>,
-    /// A lower bound of the depth from each cell on.
+    /// A lower bound of the depth over each cell and all behind it.
     from: Vec<f64>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Cell {
-    /// Coefficients over the distance from its beginning; none of another curve.
+    /// Coefficients over the distance from the start of the cell; `None` if the curve is not a cubic.
     cubic: Option<[f64; 4]>,
-    /// The piece of the outline on which it lies.
+    /// Index of the piece of the outline.
     piece: usize,
     /// A lower bound of the depth.
     least: f64,
-    /// The second derivative of a cubic at both ends.
+    /// The second derivative of the cubic at both ends.
     bends: [f64; 2],
 }
 
-/// A lower bound of the second derivative of a profile on a stretch, or of a function below it that is as high at both ends; and its slopes there.
+/// A function that is nowhere above a profile on an interval and equals it at both ends: its least second derivative and its slopes at the ends.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct Below {
+pub(in super::super) struct Underestimator {
     pub(in super::super) bend: f64,
     pub(in super::super) slopes: [f64; 2],
-    /// Whether it is the profile itself.
+    /// True if the function is the profile itself.
     pub(in super::super) is_exact: bool,
 }
 
-impl Below {
-    /// A lower bound of the values between two ends so far apart, where these are the values.
+impl Underestimator {
+    /// A lower bound of the values inside an interval of this width with these values at its ends.
     pub(in super::super) fn least(&self, values: [f64; 2], width: f64) -> f64 {
-        // Less by the product of the distances from both ends, the function is convex.
+        // Lowering the end slopes by β w/2 makes the function convex.
         let more = 0.5 * width * self.bend.min(0.0);
         let [falls, rises] = [self.slopes[0] + more, self.slopes[1] - more];
         if falls >= 0.0 {
@@ -63,7 +63,7 @@ impl Below {
         if rises <= 0.0 {
             return values[1];
         }
-        // Where the tangents at both ends meet.
+        // Intersection of the tangents at both ends.
         values[0] + falls * ((values[1] - values[0] - rises * width) / (falls - rises))
     }
 }
@@ -71,7 +71,7 @@ impl Below {
 impl Cells {
     pub(in super::super) fn new(outline: &Outline) -> Self {
         let mut cells = Self::default();
-        // A tip may reach beyond the base circle of the other gear, where that flank has no points.
+        // A tip may reach beyond the base circle of the other gear, where its flank has no points.
         let base = outline.position(0.0);
         let [first, last] = if outline.is_point { [f64::NEG_INFINITY, base] } else { [base, f64::INFINITY] };
         cells.ends.push(outline.cuts[0].max(first));
@@ -102,12 +102,12 @@ impl Cells {
         cells
     }
 
-    /// Adds a cell, or several of a curve that is no cubic.
+    /// Adds one cell for a cubic, several for another curve.
     fn push(&mut self, outline: &Outline, piece: usize, ends: [f64; 2]) {
         if let Some(cubic) = outline.cubic(piece, ends) {
             let length = ends[1] - ends[0];
             let [c0, c1, c2, c3] = cubic;
-            // The points that span a cubic (Bernstein's form).
+            // Bernstein coefficients: their minimum bounds the cubic from below.
             let (one, other) = (c0 + length * c1 / 3.0, c0 + length * (2.0 * c1 + length * c2) / 3.0);
             let last = c0 + length * (c1 + length * (c2 + length * c3));
             let bends = [2.0 * c2, 2.0 * c2 + 6.0 * c3 * length];
@@ -119,7 +119,7 @@ impl Cells {
         for at in 0..CURVED_CELLS {
             let ends = [at, at + 1].map(|end| share(&ends, end, CURVED_CELLS));
             let values = ends.map(|end| outline.depth_on(end, piece));
-            let least = outline.below(piece, ends).least(values, ends[1] - ends[0]);
+            let least = outline.underestimator(piece, ends).least(values, ends[1] - ends[0]);
             self.curves.push(Cell { cubic: None, piece, least, bends: [0.0; 2] });
             self.ends.push(ends[1]);
         }
@@ -159,28 +159,28 @@ impl Cells {
         self.curves.len()
     }
 
-    /// Where a cell begins; of their number, where the last one ends.
+    /// The start of a cell; for `count()`, the end of the last cell.
     pub(in super::super) fn end(&self, at: usize) -> f64 {
         self.ends[at]
     }
 
-    /// The piece of the outline on which a cell lies.
+    /// Index of the piece of the outline that a cell belongs to.
     pub(in super::super) fn piece(&self, cell: usize) -> usize {
         self.curves[cell].piece
     }
 
-    /// The first corner behind a cell: the number of the cell that begins there.
+    /// Index of the first cell after this one that starts at a corner.
     pub(in super::super) fn next_corner(&self, cell: usize) -> usize {
         (cell + 1..self.count()).find(|at| self.corners[*at]).unwrap_or(self.count())
     }
 
-    /// The cell of a position, among these; where one begins that is the one behind.
+    /// The cell that contains a position, within this range; at a boundary the cell behind it.
     #[inline]
     pub(in super::super) fn cell(&self, position: f64, [first, last]: [usize; 2]) -> usize {
         first + self.ends[first + 1..=last].partition_point(|end| *end <= position)
     }
 
-    /// Depth, and its first and second derivative, on a cell.
+    /// Depth and its first two derivatives on a cell.
     #[inline]
     pub(in super::super) fn rates(&self, outline: &Outline, position: f64, cell: usize) -> [f64; 3] {
         let Cell { cubic, piece, .. } = &self.curves[cell];
@@ -191,39 +191,39 @@ impl Cells {
         outline.rates(position, *piece)
     }
 
-    /// A lower bound of the depth on these cells and between them.
+    /// A lower bound of the depth over a range of cells.
     #[inline]
     pub(in super::super) fn least(&self, [first, last]: [usize; 2]) -> f64 {
         self.over(first, last + 1, |cell| cell.least, 0)
     }
 
-    /// A lower bound of the depth from a cell on.
+    /// A lower bound of the depth over a cell and all behind it.
     pub(in super::super) fn least_from(&self, cell: usize) -> f64 {
         self.from[cell]
     }
 
-    /// What the profile is no less than between two places on these cells with such rates, without a corner in between.
+    /// An underestimator between two positions on these cells with these rates, without a corner in between.
     #[inline]
-    pub(in super::super) fn below(
+    pub(in super::super) fn underestimator(
         &self,
         outline: &Outline,
         [first, last]: [usize; 2],
         ends: [f64; 2],
         rates: [&[f64; 3]; 2],
-    ) -> Below {
+    ) -> Underestimator {
         if self.curves[first].cubic.is_none() {
-            return outline.below(self.curves[first].piece, ends);
+            return outline.underestimator(self.curves[first].piece, ends);
         }
-        // Straight within a cell.
+        // The second derivative is linear within a cell.
         let mut bend = rates[0][2].min(rates[1][2]);
         if first < last {
             let inside = self.over(first + 1, last, |cell| cell.bends[0].min(cell.bends[1]), 1);
             bend = bend.min(self.curves[first].bends[1]).min(self.curves[last].bends[0]).min(inside);
         }
-        Below { bend, slopes: [rates[0][1], rates[1][1]], is_exact: true }
+        Underestimator { bend, slopes: [rates[0][1], rates[1][1]], is_exact: true }
     }
 
-    /// The least of some cells from one to before another, by blocks where there are many.
+    /// The minimum of `of` over a half-open range of cells; whole blocks use their stored minimum.
     #[inline]
     fn over(&self, from: usize, to: usize, of: impl Fn(&Cell) -> f64, which: usize) -> f64 {
         let least = |from: usize, to: usize| self.curves[from..to].iter().map(&of).fold(f64::INFINITY, f64::min);
@@ -236,7 +236,7 @@ impl Cells {
     }
 }
 
-/// The cubic through four places of a profile between two positions, over the distance from the first; none where the profile is another function.
+/// The cubic through four samples of a profile between two positions, over the distance from the first; `None` if the profile is not a cubic.
 pub(super) fn fitted(outline: &Outline, piece: usize, ends: [f64; 2]) -> Option<[f64; 4]> {
     let length = ends[1] - ends[0];
     let depth = |share: f64| outline.depth_on(ends[0] + share * length, piece);
@@ -250,7 +250,7 @@ pub(super) fn fitted(outline: &Outline, piece: usize, ends: [f64; 2]) -> Option<
     }
     let mut cubic = [0.0; 4];
     for at in (0..FITTED.len()).rev() {
-        // Times (share − the node), plus the next difference.
+        // Horner: multiply by (share − node), add the next difference.
         for power in (1..4).rev() {
             cubic[power] = cubic[power - 1] - FITTED[at] * cubic[power];
         }

@@ -178,7 +178,7 @@ fn the_separation_stays_within_its_bounds() {
                 let [first, last] = [&touches[from], &touches[to]];
                 let share = 1.0 - first.rate.min(last.rate) / first.rate.max(last.rate);
                 let least = first.rate_slope.abs().min(last.rate_slope.abs());
-                let more = branch_and_bound::MORE * share * share * least + 1e-9 * least;
+                let more = branch_and_bound::RATE_SLOPE_MARGIN * share * share * least + 1e-9 * least;
                 for touch in &touches[from..=to] {
                     let is_within = touch.separation >= first.separation
                         && touch.bend >= first.bend.min(last.bend) - 1e-12 * first.bend.abs()
