@@ -51,6 +51,8 @@ pub struct Imported {
     /// have no field there.
     pub read: Vec<String>,
     pub follows: Vec<String>,
+    /// Attributes that say another value than one that is read.
+    pub contradicting: Vec<String>,
     pub not_supported: Vec<String>,
     /// Sentences: defaults that stand for what the file does not say, and what else is to be known.
     pub notes: Vec<String>,
@@ -152,7 +154,8 @@ fn read(version: &str, model: &Model, stage: Option<&str>) -> Result<Imported, R
     let study = written::with_head(head, &body, &open);
     notes.extend(missing.iter().map(|what| format!("It does not say: {what}.")));
     notes.extend(open.iter().map(|(_, what, _)| format!("It does not say: {what}; it must be filled in.")));
-    Ok(Imported { study, read: fates.read, follows: fates.follows, not_supported: fates.not_supported, notes })
+    let report::Fates { read, follows, contradicting, not_supported, .. } = fates;
+    Ok(Imported { study, read, follows, contradicting, not_supported, notes })
 }
 
 /// A sentence about a version whose names may be others than those that are read.

@@ -265,7 +265,8 @@ def transmission_error(
     slices : int
         Across the face, where modifications vary along it and nothing is known in closed form; 17 without it.
     corner_contact : "none" or "exact"
-        Whether teeth touch before and beyond the path of contact too, with the corners of their tips; "none" without it.
+        Whether teeth touch before and beyond the path of contact too, with the corners of their tips; "none" without it. Where
+        that changes the peak-to-peak by more than 2 %, a UserWarning says by how much, but with ``summary=False``.
     slice_coupling : "none" or "plate"
         Whether slices support one another, as the tooth of a plate does; "none" without it. These three are fields of a study's
         ``ste`` too.
@@ -312,7 +313,7 @@ def peak_to_peak(
     invalid : "raise" or "nan"
         What becomes of a design that does not fit the pair, or is loaded beyond the model.
     slices, corner_contact, slice_coupling
-        As :func:`transmission_error` has them.
+        As :func:`transmission_error` has them, but no warning reports what ``corner_contact="none"`` changes.
 
     Returns
     -------

@@ -144,7 +144,7 @@ fn is_kept(py: Python<'_>, invalid: &str) -> PyResult<bool> {
 /// invalid : "raise" or "nan"
 ///     What becomes of a design that does not fit the pair, or is loaded beyond the model.
 /// slices, corner_contact, slice_coupling
-///     As :func:`transmission_error` has them.
+///     As :func:`transmission_error` has them, but no warning reports what ``corner_contact="none"`` changes.
 ///
 /// Returns
 /// -------

@@ -1,6 +1,7 @@
 """Kernels against closed forms, against each other, and against what a study computes by another way."""
 
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -209,3 +210,23 @@ def test_the_generated_classes_are_those_of_the_program():
     words = [sys.executable, str(ROOT / "python" / "generate"), "--check", _gearstudy.__file__]
     ended = subprocess.run(words, capture_output=True, text=True)
     assert ended.returncode == 0, ended.stderr
+
+
+def test_a_curve_warns_of_corners_that_it_leaves_out(stiffness):
+    """The curve with corner contact is the second method."""
+    wheel = gs.GearSpecification(teeth=30, face_width=15e-3, bore_radius=8e-3)
+    soft = gs.Stiffness(spur_pair(module=2e-3, pinion=wheel, gear=wheel, material=gs.Material(youngs_modulus=3.2e9, poisson_ratio=0.35)))
+    exact = gs.transmission_error(soft, 10.0, corner_contact="exact").peak_to_peak
+    with pytest.warns(UserWarning, match="tip corners touch") as caught:
+        without = gs.transmission_error(soft, 10.0).peak_to_peak
+    assert len(caught) == 1 and caught[0].filename == __file__
+    percent = 100 * (without / exact - 1)
+    assert f"{percent:.0f} % too large" in str(caught[0].message) and percent > 50
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        gs.transmission_error(soft, 10.0, corner_contact="exact")
+        gs.transmission_error(stiffness, 1.0)
+        gs.transmission_error(stiffness, 1e-310)
+        gs.transmission_error(stiffness, 1.0, gs.TipRelief(gear="both", amount=60e-6, fraction=1.0))
+        with pytest.raises(UserWarning, match="corner_contact"):
+            gs.transmission_error(soft, 10.0)

@@ -74,7 +74,7 @@ pub(super) fn import(file: &Path, stage: Option<&str>, as_json: bool) -> Result<
     // No more than one byte too many, whatever the file says of its size.
     File::open(file).map_err(cannot)?.take(rexs::MOST_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(cannot)?;
     let text = rexs::text_of(bytes).map_err(|error| Ending::Usage(error.in_file(file)))?;
-    let rexs::Imported { study, read, follows, not_supported, notes } =
+    let rexs::Imported { study, read, follows, contradicting, not_supported, notes } =
         rexs::import(&text, stage).map_err(|error| Ending::Usage(error.in_file(file)))?;
     if as_json {
         json::answer(&json!({
@@ -82,6 +82,7 @@ pub(super) fn import(file: &Path, stage: Option<&str>, as_json: bool) -> Result<
             "study": study,
             "read": read,
             "follows": follows,
+            "contradicting": contradicting,
             "not_supported": not_supported,
             "notes": notes,
         }));

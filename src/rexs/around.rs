@@ -9,6 +9,8 @@ pub(super) struct Around<'a> {
     pub flanks: Vec<&'a Component>,
     /// Racks of the first manufacturing step, and its settings.
     pub racks: Vec<&'a Component>,
+    /// Pinion-type cutters of that step, where no rack is.
+    pub cutters: Vec<&'a Component>,
     pub settings: Vec<&'a Component>,
     pub materials: Vec<&'a Component>,
 }
@@ -42,7 +44,10 @@ impl<'a> Around<'a> {
         };
         let racks = of_first(&|component| component.kind == "rack_shaped_tool");
         let settings = of_first(&is_settings);
+        let cutters =
+            if racks.is_empty() { of_first(&|component| component.kind == "cutter_wheel_tool") } else { Vec::new() };
         if racks.is_empty()
+            && cutters.is_empty()
             && let Some(other) = of_first(&is_tool).first()
         {
             let note = format!("The {name} is cut by a {}, which is not read: a rack stands for it.", other.kind);
@@ -74,6 +79,6 @@ impl<'a> Around<'a> {
         let tools = steps.iter().map(|(component, _)| *component);
         pair.concern([gear].into_iter().chain(flanks.iter().copied()).chain(tools));
         pair.concern(materials.iter().copied().chain(data));
-        Self { gear, flanks, racks, settings, materials }
+        Self { gear, flanks, racks, cutters, settings, materials }
     }
 }

@@ -1,12 +1,16 @@
-//! The rack that cuts a gear, and the corner of its tip, as tools, settings and flanks say them. Must not know: the text of a study.
+//! The rack or pinion-type cutter that cuts a gear, and the corner of its tip, as tools, settings and flanks say them. Must not know: the text of a study.
 
 use super::Refusal;
 use super::around::Around;
+use super::gear::RexsPair;
 use super::model::{Component, Fate, Said};
 use super::ways::{ANGLES, LENGTHS, PLAIN, Way, agreed, some};
 
 /// A tip form circle that differs by less from the tip circle is rounded \[mm\].
 const ROUNDING: f64 = 1e-3;
+
+/// A root diameter that differs by less from that by the tool has an allowance, modules.
+const ROOT: f64 = 0.3;
 
 /// What a tool says of its ramp.
 const RAMP: [&str; 3] =
@@ -31,7 +35,64 @@ pub(super) struct StatedRack {
     pub machining_allowance: Option<Said>,
 }
 
+/// The pinion-type cutter that shapes a gear; lengths in modules.
+#[derive(Clone, Copy)]
+pub(super) struct StatedCutter {
+    pub teeth: Said,
+    pub profile_shift: Said,
+    pub addendum: Said,
+    pub tip_radius: Said,
+}
+
+impl StatedRack {
+    /// What counts of the rack of a gear that is shaped: the root follows from the cutter.
+    pub(super) fn of_shaped(self, gear: &Component) -> Self {
+        for name in ["root_diameter", "tooth_depth"] {
+            gear.set(name, Fate::Follows);
+        }
+        Self { addendum: self.addendum, ..Self::default() }
+    }
+}
+
 impl Around<'_> {
+    /// The pinion-type cutter, if it says all that a study takes of one; else a note says what is missing.
+    pub(super) fn cutter(&self, m: f64, name: &str, pair: &mut RexsPair) -> Result<Option<StatedCutter>, Refusal> {
+        let Some(first) = self.cutters.first() else { return Ok(None) };
+        let of_cutter = |ways: &[Way]| agreed(&self.cutters, ways);
+        let teeth = of_cutter(&[("number_of_teeth", PLAIN, 1.0)])?;
+        let profile_shift =
+            of_cutter(&[("addendum_modification_coefficient", PLAIN, 1.0), ("addendum_modification", LENGTHS, m)])?;
+        let addendum = of_cutter(&[
+            ("addendum_coefficient_reference_profile", PLAIN, 1.0),
+            ("addendum_reference_profile", LENGTHS, m),
+        ])?;
+        let tip_radius = of_cutter(&[
+            ("tip_radius_factor", PLAIN, 1.0),
+            ("tip_corner_radius_factor_reference_profile", PLAIN, 1.0),
+            ("tip_radius", LENGTHS, m),
+            ("tip_corner_radius_reference_profile", LENGTHS, m),
+        ])?;
+        if let (Some(teeth), Some(profile_shift), Some(addendum), Some(tip_radius)) =
+            (teeth, profile_shift, addendum, tip_radius)
+        {
+            return Ok(Some(StatedCutter { teeth, profile_shift, addendum, tip_radius }));
+        }
+        let missing = [
+            (teeth, "number_of_teeth"),
+            (profile_shift, "addendum_modification_coefficient"),
+            (addendum, "addendum_coefficient_reference_profile"),
+            (tip_radius, "tip_radius_factor"),
+        ];
+        let missing: Vec<&str> = missing.iter().filter(|(said, _)| said.is_none()).map(|(_, name)| *name).collect();
+        self.cutters.iter().for_each(|cutter| cutter.is_not_supported());
+        pair.notes.push(format!(
+            "Not supported: the {} that cuts the {name}, since it does not say {}; a rack stands for it.",
+            first.kind,
+            missing.join(" and ")
+        ));
+        Ok(None)
+    }
+
     pub(super) fn rack(
         &self,
         module: Said,
@@ -49,8 +110,14 @@ impl Around<'_> {
             ("addendum_reference_profile", LENGTHS, m),
         ])?;
         let mut dedendum = by_tool;
-        if by_tool.is_some() {
-            gear.follows("root_diameter");
+        if let Some(addendum) = by_tool {
+            // d_f = m(z − 2 h_fP* + 2 x), but for the thickness allowance and the machining allowance.
+            let x = shift.map_or(0.0, |shift| shift.value);
+            let root = teeth.value - 2.0 * (addendum.value - x);
+            match gear.number("root_diameter", LENGTHS) {
+                Ok(Some(said)) if (said.value / m - root).abs() > ROOT => gear.set("root_diameter", Fate::Contradicts),
+                _ => gear.set("root_diameter", Fate::Follows),
+            }
             gear.follows("tooth_depth");
         } else {
             let by_depth = |depth: Said| tip_diameter.map(|tip| depth.map(|depth| tip.value - 2.0 * depth));

@@ -6,7 +6,7 @@
 
 use super::Refusal;
 use super::around::Around;
-use super::cutting::{StatedRack, TipCorner};
+use super::cutting::{StatedCutter, StatedRack, TipCorner};
 use super::model::{Component, Fate, Model, Relation, Said, refuse};
 use super::modifications::{Modification, modifications};
 use super::ways::{ANGLES, DENSITIES, LENGTHS, PLAIN, STRESSES, agreed, some};
@@ -35,6 +35,8 @@ pub(super) struct RexsGear {
     pub tip_diameter: Option<Said>,
     pub bore_diameter: Option<Said>,
     pub rack: StatedRack,
+    /// The cutter, where a gear is shaped.
+    pub cutter: Option<StatedCutter>,
     pub tip: Option<TipCorner>,
     pub thickness: Option<Thickness>,
     pub span_teeth: Option<Said>,
@@ -100,7 +102,9 @@ impl RexsGear {
         )?
         .map(|height| height.map(|height| m * z + 2.0 * height)));
         let angle = pressure_angle.map_or(20.0, |angle| angle.value).to_radians();
+        let cutter = around.cutter(m, name, pair)?;
         let rack = around.rack(module, teeth, shift, tip_diameter, angle)?;
+        let rack = if cutter.is_some() { rack.of_shaped(gear) } else { rack };
         let mut said = Self {
             teeth,
             module,
@@ -111,6 +115,7 @@ impl RexsGear {
             bore_diameter: some(gear.number("inner_diameter", LENGTHS)?),
             tip: around.tip(m, tip_diameter, &rack)?,
             rack,
+            cutter,
             thickness: None,
             span_teeth: gear.number("number_of_teeth_for_span_measurement", PLAIN)?.filter(|teeth| teeth.value >= 1.0),
             ball_diameter: some(gear.number("diameter_of_measuring_ball_or_pin", LENGTHS)?),
@@ -121,7 +126,8 @@ impl RexsGear {
         };
         said.thickness = said.thickness(&around, &of_flank)?;
         for name in FOLLOWING {
-            of_flank.iter().chain(&around.racks).chain(&around.materials).for_each(|component| component.follows(name));
+            let all = of_flank.iter().chain(&around.racks).chain(&around.cutters).chain(&around.materials);
+            all.for_each(|component| component.follows(name));
         }
         Ok(said)
     }
@@ -185,13 +191,11 @@ impl RexsGear {
 }
 
 /// Attributes that follow from those that are read.
-const FOLLOWING: [&str; 38] = [
+const FOLLOWING: [&str; 36] = [
     "axial_module",
     "axial_pitch",
     "base_circle_diameter",
     "base_diameter",
-    "dedendum_coefficient_reference_profile",
-    "dedendum_reference_profile",
     "helix_angle_base_circle",
     "helix_angle_base_diameter",
     "load_angle_at_tip",

@@ -21,6 +21,8 @@ pub(super) enum Fate {
     Read,
     /// It says again what another one says, or what follows from those that are read.
     Follows,
+    /// It says another value of a quantity than the attribute that is read.
+    Contradicts,
 }
 
 #[derive(Debug)]

@@ -12,6 +12,7 @@ const MOST_NAMES: usize = 400;
 pub(super) struct Fates {
     pub read: Vec<String>,
     pub follows: Vec<String>,
+    pub contradicting: Vec<String>,
     pub not_supported: Vec<String>,
     lines: Vec<String>,
 }
@@ -19,11 +20,13 @@ pub(super) struct Fates {
 impl Fates {
     /// Those of `concerned`, each once; the other components are counted.
     pub(super) fn of(model: &Model, concerned: &[&Component]) -> Self {
-        let mut fates = Self { read: Vec::new(), follows: Vec::new(), not_supported: Vec::new(), lines: Vec::new() };
+        let [read, follows, contradicting, not_supported, lines] = [const { Vec::new() }; 5];
+        let mut fates = Self { read, follows, contradicting, not_supported, lines };
         let each = |fate| -> (Vec<String>, String) { listed(concerned, fate) };
         let words = [
             (Fate::Read, "Read"),
             (Fate::Follows, "Not needed, since they follow from those"),
+            (Fate::Contradicts, "Not read, since they contradict those that are"),
             (Fate::NotSupported, "Not supported"),
         ];
         for (fate, word) in words {
@@ -35,6 +38,7 @@ impl Fates {
             match fate {
                 Fate::Read => fates.read = all,
                 Fate::Follows => fates.follows = all,
+                Fate::Contradicts => fates.contradicting = all,
                 Fate::NotSupported => fates.not_supported = all,
             }
         }

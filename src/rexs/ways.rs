@@ -1,7 +1,11 @@
 //! The ways in which versions say one quantity, and units. Must not know: what a quantity is for.
 
 use super::Refusal;
-use super::model::{Component, Said, Units, refuse};
+use super::model::{Component, Fate, Said, Units, refuse};
+
+/// Values of one quantity that differ by more than this share, or by more than this in modules, mm or degrees, contradict each other: less is
+/// rounding of a printed number.
+const ROUNDED: f64 = 5e-3;
 
 pub(super) const LENGTHS: Units =
     &[("mm", 1.0), ("mum", 1e-3), ("um", 1e-3), ("µm", 1e-3), ("μm", 1e-3), ("m", 1e3), ("cm", 10.0)];
@@ -13,13 +17,13 @@ pub(super) const DENSITIES: Units = &[("kg / dm^3", 1e3), ("kg/dm^3", 1e3), ("kg
 /// A way to say a quantity: an attribute, its units, and by what it is divided.
 pub(super) type Way<'w> = (&'w str, Units, f64);
 
-/// The one value that several components give in the first of several ways; the others say it again.
+/// The one value that several components give in the first of several ways; the others say it again, or contradict it.
 pub(super) fn agreed(components: &[&Component], ways: &[Way]) -> Result<Option<Said>, Refusal> {
     let mut found: Option<(Said, &str)> = None;
     for (name, units, divisor) in ways {
-        if found.is_some() {
+        if let Some((known, _)) = found {
             for component in components {
-                component.follows(name);
+                component.compare(name, units, *divisor, known.value);
             }
             continue;
         }
@@ -39,6 +43,22 @@ pub(super) fn agreed(components: &[&Component], ways: &[Way]) -> Result<Option<S
         found = found.map(|(said, id)| (said.map(|value| value / divisor), id));
     }
     Ok(found.map(|(said, _)| said))
+}
+
+impl Component {
+    /// Notes whether an attribute that is not read says a value again or contradicts it.
+    pub(super) fn compare(&self, name: &str, units: Units, divisor: f64, known: f64) {
+        let fate = match self.number(name, units) {
+            Ok(None) => return,
+            Ok(Some(said)) => {
+                let value = said.value / divisor;
+                let is_rounded = (value - known).abs() <= ROUNDED * f64::max(1.0, known.abs());
+                if is_rounded { Fate::Follows } else { Fate::Contradicts }
+            }
+            Err(_) => Fate::NotSupported,
+        };
+        self.set(name, fate);
+    }
 }
 
 /// A value above 0; 0 says that there is none.

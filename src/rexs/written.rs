@@ -7,7 +7,7 @@
 use std::path::Path;
 
 use super::Refusal;
-use super::cutting::{StatedRack, TipCorner};
+use super::cutting::{StatedCutter, StatedRack, TipCorner};
 use super::gear::{RexsPair, Thickness, is_other};
 use super::model::Said;
 use crate::program::load_text;
@@ -63,7 +63,8 @@ impl Written {
         }
     }
 
-    fn rack(&mut self, before: &str, after: &str, rack: StatedRack, whose: &str) {
+    /// `is_cutting` is false where pinion-type cutters shape all gears that it is for: only its addendum counts then.
+    fn rack(&mut self, before: &str, after: &str, rack: StatedRack, (whose, is_cutting): (&str, bool)) {
         let fields = rack.fields();
         let fields_said = fields.map(|(name, said, unit, _)| (name, said, unit));
         self.group(&format!("{before}rack: {{ "), &fields_said, "");
@@ -77,7 +78,7 @@ impl Written {
         if fields.iter().any(|(_, said, ..)| said.is_some()) {
             self.put(&format!(" }}{after}"));
         }
-        for (name, said, _, usual) in fields {
+        for (name, said, _, usual) in fields.into_iter().take(if is_cutting { RACK } else { 1 }) {
             if let (None, Some(usual)) = (said, usual) {
                 self.missing.push(format!("{whose} {name} ({usual} modules stand for it)"));
             }
@@ -147,7 +148,9 @@ impl RexsPair<'_> {
         if is_common {
             let mut common = racks[0];
             racks[1..].iter().for_each(|other| common.fill(other));
-            text.rack("    ", "\n", common, "the rack's");
+            let is_cutting = self.gears.iter().any(|gear| gear.cutter.is_none());
+            text.rack("    ", "\n", common, ("the rack's", is_cutting));
+            self.taken_over(&mut text, &racks);
         }
         for (name, gear) in ["pinion", "gear"].iter().zip(&self.gears) {
             text.field(&format!("    {name}: {{ "), "teeth", Some(gear.teeth), "");
@@ -166,7 +169,16 @@ impl RexsPair<'_> {
                 text.missing.push(format!("addendum_modification_coefficient of the {name} (0 stands for it)"));
             }
             if !is_common {
-                text.rack(", ", "", gear.rack, &format!("the {name}'s rack's"));
+                text.rack(", ", "", gear.rack, (&format!("the {name}'s rack's"), gear.cutter.is_none()));
+            }
+            if let Some(StatedCutter { teeth, profile_shift, addendum, tip_radius }) = gear.cutter {
+                let fields = [
+                    ("teeth", Some(teeth), ""),
+                    ("profile_shift", Some(profile_shift), ""),
+                    ("addendum", Some(addendum), ""),
+                    ("tip_radius", Some(tip_radius), ""),
+                ];
+                text.group(", pinion_cutter: { ", &fields, " }");
             }
             match gear.tip {
                 Some(TipCorner::Chamfer(size)) => {
@@ -226,6 +238,24 @@ impl RexsPair<'_> {
         }
         self.modifications(&mut text);
         Ok(text)
+    }
+
+    /// Reports values of a rack that one gear says and that stand for the other's too.
+    fn taken_over(&self, text: &mut Written, racks: &[StatedRack]) {
+        for (at, (name, other)) in [("pinion", "gear"), ("gear", "pinion")].into_iter().enumerate() {
+            if self.gears[at].cutter.is_some() {
+                continue;
+            }
+            let pairs = racks[at].fields().into_iter().zip(racks[1 - at].fields());
+            let taken: Vec<&str> = pairs
+                .filter(|((_, own, ..), (_, others, ..))| own.is_none() && others.is_some())
+                .map(|((field, ..), _)| field)
+                .collect();
+            if !taken.is_empty() {
+                let what = taken.join(", ");
+                text.missing.push(format!("{what} of the {name}'s rack (as of the {other}'s, which stands for it)"));
+            }
+        }
     }
 
     fn modifications(&self, text: &mut Written) {

@@ -15,6 +15,9 @@ use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::gear::transmission_error::neglected_corners::NeglectedCorners;
 use studygraph::warning::{Cases, Warning};
 
+/// Ends a warning of a curve.
+pub const REMEDY: &str = "set `corner_contact: exact`";
+
 /// What its cases are about.
 pub const ABOUT: &str = "corner contact";
 
@@ -24,6 +27,8 @@ pub const ABOUT: &str = "corner contact";
 const REPORTED: f64 = 0.02;
 /// The same relative to the largest approach: below it a relief has made the peak-to-peak so small that contact laws matter more.
 const OF_APPROACH: f64 = 1e-3;
+/// A change \[m\] that is rounding: lengths on the path of contact are some millimetres.
+const ROUNDED_M: f64 = 1e-15;
 /// An estimate of the change that is this much smaller than [`REPORTED`] is not verified by a curve with corner contact.
 const MARGIN: f64 = 0.5;
 
@@ -84,30 +89,35 @@ impl<'a> WithoutCorners<'a> {
         matters.reduce(|worst, index| if change(&index) > change(&worst) { index } else { worst })
     }
 
-    /// What the curve of the same load case with corner contact changes; none where that is little.
+    /// What the curve of the same load case with corner contact changes; none where that is little. `remedy` ends the sentence.
     #[must_use]
-    pub fn compared(&self, loading: &LoadCase) -> Option<Warning> {
-        let Self { name, torque, estimated, .. } = *self;
+    pub fn compared(&self, loading: &LoadCase, remedy: &str) -> Option<Warning> {
+        let Self { name, torque, .. } = *self;
+        let (size, sentence) = self.error(loading, remedy)?;
+        let sentence = format!("design `{name}` at {torque} N m: {sentence}");
+        Some(Warning::Cases(Cases::one(ABOUT, name, (torque, "N m"), (size, sentence))))
+    }
+
+    /// Relative error of the peak-to-peak, by the same load case with corner contact, and a sentence about it; none where it is small.
+    #[must_use]
+    pub fn error(&self, loading: &LoadCase, remedy: &str) -> Option<(f64, String)> {
         let with = loading.asked(Asked { integrals: true, ..Asked::default() });
-        let [before, after] = estimated.corners.lengths.map(|length| significant(in_unit(length, "mm"), 3));
+        let [before, after] = self.estimated.corners.lengths.map(|length| significant(in_unit(length, "mm"), 3));
         let touch = format!(
-            "design `{name}` at {torque} N m: `corner_contact` is `none`, but the gears approach so far that tip corners \
-             touch up to {before} mm before A and {after} mm after E"
+            "`corner_contact` is `none`, but the gears approach so far that tip corners touch up to {before} mm before A and \
+             {after} mm after E"
         );
-        let case = |size: f64, sentence: String| {
-            Some(Warning::Cases(Cases::one(ABOUT, name, (torque, "N m"), (size, sentence))))
-        };
         if !loading.holds(with.largest.value) {
             let limit = significant(in_unit(loading.largest_approach(), "mm"), 3);
             let sentence = format!(
                 "{touch}; the size of the error is unknown, since `corner_contact: exact` holds up to an approach of {limit} \
                  mm only"
             );
-            return case(f64::INFINITY, sentence);
+            return Some((f64::INFINITY, sentence));
         }
         let peak_to_peak = with.largest.value - with.smallest.value;
         let change = (self.peak_to_peak - peak_to_peak).abs();
-        if change <= REPORTED * peak_to_peak || change <= OF_APPROACH * with.largest.value {
+        if change <= REPORTED * peak_to_peak || change <= OF_APPROACH * with.largest.value || change <= ROUNDED_M {
             return None;
         }
         let compared = |quantity: &str, without: f64, with: f64| {
@@ -118,11 +128,11 @@ impl<'a> WithoutCorners<'a> {
             )
         };
         let sentence = format!(
-            "{touch}; {}; {}; set `corner_contact: exact`",
+            "{touch}; {}; {}; {remedy}",
             compared("peak-to-peak", self.peak_to_peak, peak_to_peak),
             compared("mean", self.mean, with.mean),
         );
-        case(change / peak_to_peak, sentence)
+        Some((change / peak_to_peak, sentence))
     }
 }
 

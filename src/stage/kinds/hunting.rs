@@ -8,7 +8,7 @@ mod tables;
 use self::stated::{OfPair, StatedDeviations};
 use self::tables::{Case, Found, Order, Row, curve, flanks, spectrum, summary};
 use crate::stage::common::{Contact, Slices};
-use crate::stage::neglected_corners::{self, WithoutCorners};
+use crate::stage::neglected_corners::{self, REMEDY, WithoutCorners};
 use crate::stage::{Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, RowCount, Stage};
 use crate::stage::{common, designs, names, pair};
 use declare::Declared;
@@ -184,7 +184,7 @@ impl Stated {
         let Some(exact) = neglected_corners::cycle(inputs, self.settings()) else { return };
         let (_, design, torque) = &tasks[worst];
         let loading = LoadCase::new(&exact, design, *torque);
-        if let Some(warning) = without[worst].and_then(|without| without.compared(&loading)) {
+        if let Some(warning) = without[worst].and_then(|without| without.compared(&loading, REMEDY)) {
             (context.warn)(warning);
         }
     }

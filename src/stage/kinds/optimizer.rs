@@ -3,6 +3,7 @@
 //! Every value of the designs that is given as `[least, most]` is a variable. Must not know: how any method searches.
 
 mod ahead;
+mod corners;
 mod goal;
 mod passes;
 mod sampling;
@@ -16,7 +17,6 @@ use crate::stage::cases::{Cases, Loads};
 use crate::stage::common::{Contact, Slices};
 use crate::stage::designs::{self, Element, Elements, NamedDesign};
 use crate::stage::doubts::Doubted;
-use crate::stage::neglected_corners::{self, WithoutCorners};
 use crate::stage::{
     Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, Stage, common, names, root_influences,
 };
@@ -283,31 +283,6 @@ impl Optimizer {
             Doubted { design: &self.stated.name, torque, doubt, peak_to_peak }.told()
         });
         told.into_iter().flatten().flatten().for_each(|case| (context.warn)(Warning::Cases(case)));
-    }
-
-    /// Reports the error of the load case of the best design that loses most by `corner_contact: none`.
-    fn warn_of_corners(&self, (context, inputs): (&Context, &Inputs), found: &Found, of: (&Fitted, &MeshCycle)) {
-        let Ok(design) = of.0.design(&found.best.point) else { return };
-        if !context.is_heard {
-            return;
-        }
-        let mut without = Vec::new();
-        self.of_cases(of, &design, |loading, torque| {
-            without.push(WithoutCorners::of(&self.stated.name, torque, loading));
-        });
-        let Some(worst) = WithoutCorners::worst(&without) else { return };
-        let (Some(compared), Some(cycle)) = (without[worst], neglected_corners::cycle(inputs, found.settings)) else {
-            return;
-        };
-        let mut call = 0;
-        self.of_cases((of.0, &cycle), &design, |loading, _| {
-            if call == worst
-                && let Some(warning) = compared.compared(loading)
-            {
-                (context.warn)(warning);
-            }
-            call += 1;
-        });
     }
 
     fn tables(

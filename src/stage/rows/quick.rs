@@ -12,7 +12,7 @@ use super::{Class, Column};
 use crate::stage::cases::{DEVIATIONS, Deviations};
 use crate::stage::common::{self, Contact, Slices};
 use crate::stage::designs::{self, Element, NamedDesign};
-use crate::stage::neglected_corners::{self, WithoutCorners};
+use crate::stage::neglected_corners::{self, REMEDY, WithoutCorners};
 use crate::stage::{Context, Inputs};
 use declare::declared::Declared;
 use declare::error::{Failure, suggest};
@@ -59,6 +59,8 @@ enum DesignSource {
 pub struct Upstream<'q> {
     pair: GearPair,
     base: MeshCycle,
+    /// The design's.
+    name: String,
     design: Option<Design>,
     /// The template that rows have their designs from.
     fitted: Option<Fitted<'q>>,
@@ -127,8 +129,11 @@ impl Quick {
         let of = |failure| Trouble::of(link.kind.name, failure);
         let inputs = chain.inputs(self.last, tables, outer);
         let (pair, base) = common::mesh_cycle(&inputs, sampling(&link.record)).map_err(of)?;
-        let design = match self.source {
-            DesignSource::Record { .. } => None,
+        let (name, design) = match &self.source {
+            DesignSource::Record { link, .. } => {
+                let name = design.or(names(&chain.links[*link].record).first().copied());
+                (name.unwrap_or_default().to_owned(), None)
+            }
             DesignSource::Tables => {
                 let mut all: Vec<NamedDesign> = Vec::new();
                 for port in inputs.ports.keys().filter(|port| port.starts_with(DESIGNS)) {
@@ -146,14 +151,14 @@ impl Quick {
                     };
                     return Err(Trouble::Failed(Failure::new(message)));
                 };
-                Some(only.built(&pair).map_err(of)?)
+                (only.name.clone(), Some(only.built(&pair).map_err(of)?))
             }
         };
         let fitted = match &self.source {
             DesignSource::Record { template: Some((template, _)), .. } => Some(template.on(&pair)),
             _ => None,
         };
-        Ok(Upstream { pair, base, design, fitted })
+        Ok(Upstream { pair, base, name, design, fitted })
     }
 
     /// The asked numbers of rows that differ in their torque alone, as their columns show them, or why there are none.
@@ -205,11 +210,13 @@ impl Quick {
             format!("{name} {}{space}{unit}", significant(in_unit(*value, unit), 6))
         };
         let varied = columns.iter().zip(row).filter(|(column, _)| column.class != Class::Torque);
-        let name = varied.map(written).collect::<Vec<_>>().join(", ");
+        let values = varied.map(written).collect::<Vec<_>>().join(", ");
+        // Rows that differ in their torque alone have one design.
+        let name = if values.is_empty() { upstream.name.clone() } else { values };
         let loading = LoadCase::new(&sampled.cycle, design, torque);
         let without = WithoutCorners::of(&name, torque, &loading).filter(WithoutCorners::may_matter)?;
         let cycle = neglected_corners::cycle(&chain.inputs(self.last, tables, outer), sampled.settings)?;
-        without.compared(&LoadCase::new(&cycle, design, torque))
+        without.compared(&LoadCase::new(&cycle, design, torque), REMEDY)
     }
 
     /// The cycle and the design of a row, found or as the row before had them.

@@ -28,6 +28,13 @@ stages:
   global: { <<: *search, method: { differential_evolution: { polish: nelder_mead } } }
   alone: { <<: *search, method: { powell: { restarts: 0 } } }
   short: { <<: *search, method: { powell: { evaluations: 40 } } }
+  # A relief longer than the active flank of 14.57 mm is refused.
+  edge: &edge
+    <<: *search
+    at: { torque: 500 N m }
+    design: [tip_relief: { gear: both, amount: [1 um, 600 um], length: [8 mm, 20 mm] }]
+  edge_by_simplex: { <<: *edge, method: nelder_mead }
+  edge_in_stages: { <<: *edge, search: staged }
 ";
 
 /// Tier: second method. From the middle of the box lines along the axes stop on a kink, at twice the least value.
@@ -46,4 +53,14 @@ fn a_kink_of_the_peak_to_peak_does_not_stop_a_local_search() {
     }
     assert!(best("alone").0 > 1.5 * minimum, "{:?}", best("alone"));
     assert_eq!(best("short").1, "evaluations used up");
+    // The simplex finds a design with a fourteenth of the peak-to-peak where lines stop.
+    let inside = best("edge_by_simplex");
+    assert_eq!(inside.1, "converged");
+    for stage in ["edge", "edge_in_stages"] {
+        let (found, ended) = best(stage);
+        assert!(
+            ended == "stopped at the edge of the valid designs" && found > 10.0 * inside.0,
+            "{stage}: {found} {ended}"
+        );
+    }
 }

@@ -307,3 +307,133 @@ fn names_from_a_file_stay_in_their_line() {
     let deep = format!("{{\"model\":{}", "[".repeat(1_000_000));
     assert!(refused(&deep).contains("JSON"), "{}", refused(&deep));
 }
+
+/// A pair without relations to tools, whose first gear has these further attributes; with these relations and components.
+fn pair_with(of_gear: &str, relations: &str, components: &str) -> String {
+    let gear = |id: u32, teeth: u32, further: &str| {
+        format!(
+            r#"<component id="{id}" type="cylindrical_gear"><attribute id="normal_module" unit="mm">3</attribute>
+<attribute id="number_of_teeth" unit="none">{teeth}</attribute><attribute id="face_width" unit="mm">20</attribute>
+<attribute id="inner_diameter" unit="mm">28</attribute>
+<attribute id="addendum_modification_coefficient" unit="none">0.2</attribute>{further}</component>"#
+        )
+    };
+    format!(
+        r#"<?xml version="1.0"?><model version="1.4" applicationId="x" applicationVersion="1" date="2026-01-01T00:00:00+00:00">
+<relations><relation id="100" type="stage"><ref id="1" role="stage"/><ref id="2" role="gear_1"/><ref id="3" role="gear_2"/></relation>
+{relations}</relations><components><component id="1" type="cylindrical_stage"><attribute id="center_distance" unit="mm">101.8</attribute>
+</component>{}{}{components}</components></model>"#,
+        gear(2, 19, of_gear),
+        gear(3, 48, "")
+    )
+}
+
+fn cut(gear: u32, tool: u32) -> String {
+    format!(
+        r#"<relation id="{}" type="manufacturing_step" order="1"><ref id="{gear}" role="workpiece"/><ref id="{tool}" role="tool"/></relation>"#,
+        100 + gear
+    )
+}
+
+fn tool(id: u32, kind: &str, attributes: &[(&str, &str, f64)]) -> String {
+    let attribute = |(name, unit, value): &(&str, &str, f64)| {
+        format!(r#"<attribute id="{name}" unit="{unit}">{value}</attribute>"#)
+    };
+    let attributes: String = attributes.iter().map(attribute).collect();
+    format!(r#"<component id="{id}" type="{kind}">{attributes}</component>"#)
+}
+
+const CUTTER: [(&str, &str, f64); 4] = [
+    ("number_of_teeth", "none", 25.0),
+    ("addendum_modification_coefficient", "none", 0.1),
+    ("addendum_coefficient_reference_profile", "none", 1.25),
+    ("tip_radius_factor", "none", 0.2),
+];
+const RACK: [(&str, &str, f64); 2] =
+    [("addendum_coefficient_reference_profile", "none", 1.4), ("tip_radius_factor", "none", 0.25)];
+
+/// A gear that is shaped has its cutter in the study, if that says all of it; the other gear keeps its rack.
+#[test]
+fn a_pinion_type_cutter_is_read() {
+    let tools = tool(8, "cutter_wheel_tool", &CUTTER) + &tool(9, "rack_shaped_tool", &RACK);
+    let imported = rexs::import(&pair_with("", &(cut(2, 8) + &cut(3, 9)), &tools), None).unwrap();
+    let pinion = imported.study.lines().find(|line| line.starts_with("    pinion:")).unwrap();
+    let cutter = "pinion_cutter: { teeth: 25, profile_shift: 0.1, addendum: 1.25, tip_radius: 0.2 }";
+    assert!(pinion.contains(cutter), "{pinion}");
+    assert!(imported.study.contains("rack: { dedendum: 1.4, tip_radius: 0.25 }"), "{}", imported.study);
+    assert!(imported.not_supported.is_empty(), "{:?}", imported.not_supported);
+    assert!(!imported.notes.iter().any(|note| note.contains("pinion's rack")), "{:?}", imported.notes);
+    // Both gears shaped: no word of the root of a rack.
+    let both = rexs::import(&pair_with("", &(cut(2, 8) + &cut(3, 8)), &tools), None).unwrap();
+    assert!(
+        !both.notes.iter().any(|note| note.contains("dedendum") || note.contains("tip_radius")),
+        "{:?}",
+        both.notes
+    );
+    // Without its addendum it is not read, and the reason is given.
+    let imported = rexs::import(&pair_with("", &cut(2, 8), &tool(8, "cutter_wheel_tool", &CUTTER[..2])), None).unwrap();
+    let reason = "Not supported: the cutter_wheel_tool that cuts the pinion, since it does not say \
+                  addendum_coefficient_reference_profile and tip_radius_factor; a rack stands for it.";
+    assert!(imported.notes.iter().any(|note| note == reason), "{:?}", imported.notes);
+    assert_eq!(imported.not_supported.len(), 2, "{:?}", imported.not_supported);
+}
+
+/// Of a rack that only one gear has the other's is a default, and said to be one.
+#[test]
+fn a_rack_of_one_gear_is_a_default_of_the_other() {
+    let rack = tool(9, "rack_shaped_tool", &RACK);
+    let imported = rexs::import(&pair_with("", &cut(2, 9), &rack), None).unwrap();
+    let note = "It does not say: dedendum, tip_radius of the gear's rack (as of the pinion's, which stands for it).";
+    assert!(imported.notes.iter().any(|found| found == note), "{:?}", imported.notes);
+    let both = rexs::import(&pair_with("", &(cut(2, 9) + &cut(3, 9)), &rack), None).unwrap();
+    assert!(!both.notes.iter().any(|found| found.contains("gear's rack")), "{:?}", both.notes);
+}
+
+/// A second value of a quantity follows from the one that is read only if it is the same; the dedendum of a tool is in no study.
+#[test]
+fn contradictions_are_not_reported_as_following() {
+    let import = |radius: f64, root: f64| {
+        let mut rack = RACK.to_vec();
+        rack.extend([("tip_radius", "mm", radius), ("dedendum_coefficient_reference_profile", "none", 0.7)]);
+        let of_gear = format!(r#"<attribute id="root_diameter" unit="mm">{root}</attribute>"#);
+        rexs::import(&pair_with(&of_gear, &(cut(2, 9) + &cut(3, 9)), &tool(9, "rack_shaped_tool", &rack)), None)
+            .unwrap()
+    };
+    let dedendum = ["rack_shaped_tool 9: dedendum_coefficient_reference_profile"];
+    // d_f = 3 (19 − 2 (1.4 − 0.2)).
+    let same = import(0.75, 49.8);
+    assert_eq!((same.contradicting.len(), same.not_supported.as_slice()), (0, &dedendum.map(String::from)[..]));
+    assert_eq!(same.follows, ["cylindrical_gear 2: root_diameter", "rack_shaped_tool 9: tip_radius"]);
+    let other = import(1.2, 51.3);
+    assert_eq!(other.contradicting, ["cylindrical_gear 2: root_diameter", "rack_shaped_tool 9: tip_radius"]);
+    assert_eq!(other.not_supported, dedendum);
+    let line = "# Not read, since they contradict those that are, 2 attributes: of cylindrical_gear 2: root_diameter; of \
+                rack_shaped_tool 9: tip_radius.\n";
+    assert!(other.study.contains(line), "{}", other.study);
+}
+
+/// What no study takes is listed: chords of a tooth, end reliefs.
+#[test]
+fn chords_and_end_reliefs_are_not_supported() {
+    let chord = r#"<attribute id="normal_chordal_tooth_thickness" unit="mm">4.7</attribute>
+<attribute id="chordal_tooth_thickness_upper_deviation" unit="mm">-0.05</attribute>"#;
+    let flanks = r#"<relation id="110" type="flank"><ref id="2" role="gear"/><ref id="4" role="left"/><ref id="5" role="right"/></relation>
+<relation id="111" type="reference"><ref id="4" role="origin"/><ref id="10" role="referenced"/></relation>"#;
+    let components = tool(4, "cylindrical_gear_flank", &[])
+        + &tool(5, "cylindrical_gear_flank", &[])
+        + &tool(
+            10,
+            "end_relief_datum_face",
+            &[("end_relief_depth_datum_face", "mum", 10.0), ("end_relief_length_datum_face", "mm", 2.0)],
+        );
+    let imported = rexs::import(&pair_with(chord, flanks, &components), None).unwrap();
+    assert_eq!(
+        imported.not_supported,
+        [
+            "cylindrical_gear 2: normal_chordal_tooth_thickness",
+            "cylindrical_gear 2: chordal_tooth_thickness_upper_deviation",
+            "end_relief_datum_face 10: end_relief_depth_datum_face",
+            "end_relief_datum_face 10: end_relief_length_datum_face",
+        ]
+    );
+}

@@ -5,7 +5,10 @@
 //! any minimum. So a search that has converged begins again; one that gains nothing is looked at ([`super::kink`]): where
 //! the function is smooth, or its gradients on all sides of the kink balance, it has converged. Else it goes on along the
 //! kink. Where the gradients say that it goes down but no line does, or the restarts are used up, it has stalled, and says
-//! so. Must not know: which search runs.
+//! so. Where points next to the one it found have no value, steps across that edge were refused, and the point may be no minimum: it
+//! then ends at the edge. Must not know: which search runs, why a point has no value.
+
+use std::collections::VecDeque;
 
 use super::kink::{self, STATIONARY, Slope};
 use super::line::Line;
@@ -20,6 +23,9 @@ const FINEST: f64 = 1e-8;
 /// point beside the one where several meet, misleads one look; most of them decide. Near the point where several kinks meet wide looks see all
 /// their sides and find it stationary: it is no nearer than the narrowest.
 const LOOKS: [f64; 4] = [1.0, 0.1, 10.0, 0.01];
+
+/// Points without a value that are kept: enough for all looks at a point of some variables.
+const MOST_REFUSED: usize = 256;
 
 enum Phase {
     /// The search itself.
@@ -55,6 +61,8 @@ pub(super) struct Restarted<S> {
     gradients: Vec<Vec<f64>>,
     /// The lowest of the points where gradients were taken.
     aside: (Vec<f64>, f64),
+    /// The latest points without a value, at most [`MOST_REFUSED`].
+    refused: VecDeque<Vec<f64>>,
     ended: Option<Reason>,
 }
 
@@ -75,6 +83,7 @@ impl<S: Search> Restarted<S> {
             doubts: 0,
             gradients: Vec::new(),
             aside: (Vec::new(), f64::INFINITY),
+            refused: VecDeque::new(),
             ended: None,
         };
         restarted.ask(Phase::Searching, batch);
@@ -89,8 +98,18 @@ impl<S: Search> Restarted<S> {
     }
 
     fn end(&mut self, reason: Reason) {
-        self.ended = Some(reason);
+        self.ended = Some(if self.is_beside_refused() { Reason::Edge } else { reason });
         self.batch.clear();
+    }
+
+    /// Whether a point without a value is as near to the best one as the points of a wide look are.
+    fn is_beside_refused(&self) -> bool {
+        let (at, value) = self.search.best();
+        let near = (self.step * self.limits.tolerance.max(FINEST)).sqrt();
+        let distance =
+            |point: &Vec<f64>| point.iter().zip(at).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+        // A cross has its arms, which are rounded, at that distance.
+        value.is_finite() && self.refused.iter().any(|point| distance(point) <= (1.0 + 1e-9) * near)
     }
 
     /// Radii of the looks: between the first step and the tolerance, and between that and the tolerance.
@@ -224,6 +243,9 @@ impl<S: Search> Strategy for Restarted<S> {
 
     fn learn(&mut self, values: &[f64]) -> Result<(), String> {
         self.told += values.len();
+        let refused = self.batch.iter().zip(values).filter(|(_, value)| **value == f64::INFINITY);
+        self.refused.extend(refused.map(|(point, _)| point.clone()));
+        self.refused.drain(..self.refused.len().saturating_sub(MOST_REFUSED));
         match std::mem::replace(&mut self.phase, Phase::Searching) {
             Phase::Searching => {
                 self.search.learn(values)?;

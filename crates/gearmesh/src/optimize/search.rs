@@ -25,6 +25,8 @@ pub enum Reason {
     Converged,
     /// It found no way further down, though the slopes around say that there is one, or its restarts were used up.
     Stalled,
+    /// Points beside the best one are not admissible: steps across that edge were refused.
+    Edge,
     /// The next step would have taken more evaluations than allowed.
     Evaluations,
     /// All points of a sample were evaluated.
@@ -42,6 +44,11 @@ impl Reason {
                  there, or its `restarts` were used up; start it elsewhere (`start: random` and another `seed`), or take \
                  `differential_evolution`",
             ),
+            Self::Edge => Some(
+                "the search stopped at the edge of the valid designs: designs next to the one that it found are refused, and \
+                 whether a design along the edge is better is not known; start it elsewhere (`start: random` and another `seed`), \
+                 or take `differential_evolution`",
+            ),
             Self::Evaluations => Some("the search has used up its `evaluations` and has not converged; give it more"),
             Self::Generations | Self::Converged | Self::Complete | Self::Settled => None,
         }
@@ -54,6 +61,7 @@ impl fmt::Display for Reason {
             Self::Generations => "all generations done",
             Self::Converged => "converged",
             Self::Stalled => "stalled",
+            Self::Edge => "stopped at the edge of the valid designs",
             Self::Evaluations => "evaluations used up",
             Self::Complete => "all points evaluated",
             Self::Settled => "settled",
@@ -276,7 +284,7 @@ impl Optimizer {
 
     /// Once a local search has converged: does the point it found keep the constraints? If not, on from there.
     fn next_round(&mut self) {
-        if !matches!(self.strategy.finished(), Some(Reason::Converged | Reason::Stalled)) {
+        if !matches!(self.strategy.finished(), Some(Reason::Converged | Reason::Stalled | Reason::Edge)) {
             return;
         }
         if let (Some(multipliers), Some(lowest)) = (&mut self.multipliers, self.lowest.take())

@@ -5,7 +5,7 @@
 use super::tables::{Keyed, Load};
 use super::{Named, Ste};
 use crate::stage::doubts::Doubted;
-use crate::stage::neglected_corners::{self, WithoutCorners};
+use crate::stage::neglected_corners::{self, REMEDY, WithoutCorners};
 use crate::stage::{Context, Inputs};
 use gearmesh::gear::transmission_error::cycle::MeshCycle;
 use gearmesh::gear::transmission_error::load_case::LoadCase;
@@ -82,7 +82,7 @@ impl Ste {
             without[worst]
         };
         let Some(cycle) = neglected_corners::cycle(inputs, settings) else { return };
-        let found = compared.and_then(|without| without.compared(&LoadCase::new(&cycle, design, torque)));
+        let found = compared.and_then(|without| without.compared(&LoadCase::new(&cycle, design, torque), REMEDY));
         if let Some(warning) = found {
             (context.warn)(warning);
         }

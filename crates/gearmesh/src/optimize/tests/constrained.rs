@@ -5,7 +5,7 @@
 
 use super::{choice, integer, search};
 use crate::optimize::constraints::{Evaluation, KEPT};
-use crate::optimize::search::Optimizer;
+use crate::optimize::search::{Optimizer, Reason};
 use declare::error::Failure;
 use declare::record::Value;
 
@@ -163,18 +163,33 @@ fn a_population_reaches_the_minimum_within_the_constraints() {
     }
 }
 
-/// Why local searches are not given the rule of populations: a line search stops at a cliff.
+/// Why local searches are not given the rule of populations: a local search stops at a cliff, and reports that. A cliff
+/// far from the minimum is not reported.
 #[test]
-fn a_cliff_stops_a_line_search_far_from_the_minimum() {
+fn a_cliff_stops_a_local_search_far_from_the_minimum() {
     let slope = |x: &[f64]| x[0] + 2.0 * x[1];
     let kept = |x: &[f64]| x[0] + x[1] - 0.9;
     let bounds = [(0.0, 1.0); 2];
-    let cliff = super::run(search("powell", &[], &bounds, 1), |x| if kept(x) < 0.0 { f64::INFINITY } else { slope(x) });
-    assert!(cliff.best().unwrap().value > 1.2, "{:?}", cliff.best());
+    for method in ["powell", "nelder_mead"] {
+        for restarts in [0, 30] {
+            let given = [("restarts", integer(restarts))];
+            let cliff = |x: &[f64]| if kept(x) < 0.0 { f64::INFINITY } else { slope(x) };
+            let mut cliff = super::run(search(method, &given, &bounds, 1), cliff);
+            assert!(method != "powell" || cliff.best().unwrap().value > 1.2, "{:?}", cliff.best());
+            assert_eq!(cliff.finished(), Some(Reason::Edge), "{method} {restarts}: {:?}", cliff.best());
+            assert!(cliff.doubt().unwrap().contains("stopped at the edge of the valid designs"));
+            let far = |x: &[f64]| if x[0] > 0.9 { f64::NAN } else { (x[0] - 0.3).powi(2) + (x[1] - 0.6).powi(2) };
+            let mut far = super::run(search(method, &given, &bounds, 1), far);
+            assert_eq!((far.finished(), far.doubt()), (Some(Reason::Converged), None), "{method}");
+        }
+        let edge = |x: &[f64]| if x[0] > 0.700_123 { f64::NAN } else { -x[0] };
+        assert_eq!(super::run(search(method, &[], &[(0.0, 1.0)], 1), edge).finished(), Some(Reason::Edge), "{method}");
+    }
     let mut smooth = search("powell", &[], &bounds, 1);
     let evaluate = |x: &Vec<f64>| Evaluation { value: slope(x), constraints: vec![kept(x)], ..Evaluation::default() };
     smooth.run_constrained(|points| Ok::<_, Failure>(points.iter().map(evaluate).collect())).unwrap();
     assert!((smooth.best().unwrap().value - 0.9).abs() < 1e-6, "{:?}", smooth.best());
+    assert_eq!(smooth.finished(), Some(Reason::Converged));
 }
 
 #[test]
