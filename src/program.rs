@@ -4,7 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::stage::foreign::FOREIGN;
+use crate::stage::foreign::{DERIVED, FOREIGN};
 use crate::stage::kinds::KINDS;
 use crate::stage::rows::computed::{ROWS_COMPUTED, ROWS_TAKEN_OVER};
 use declare::work::Counter;
@@ -17,6 +17,7 @@ use studygraph::study::{self, LoadError, Refused, Settings, Study};
 pub static PROGRAM: Program = Program {
     kinds: KINDS,
     foreign: FOREIGN,
+    derived: DERIVED,
     named: NAMED,
     code_of: code_digest,
     counters: &COUNTED,

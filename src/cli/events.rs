@@ -134,6 +134,9 @@ impl Observer for Lines<'_> {
             }
             Event::Progressed { stage, share } => self.progressed(stage, *share),
             Event::Warned { stage, message } => self.warned(Some(stage), message),
+            Event::Recalled { stage, warnings } => {
+                warnings.iter().for_each(|message| self.warned(Some(stage), message));
+            }
             Event::Publishing { file } => {
                 (self.say)(&json!({ "event": "writing", "study": self.study, "file": file }));
             }

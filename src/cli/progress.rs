@@ -97,6 +97,14 @@ const REDRAWN: Duration = Duration::from_millis(200);
 const WIDE: u16 = 100;
 
 impl Watcher {
+    /// How many of so many warnings were not told one by one.
+    fn more_warnings(&self, stage: &str, count: usize) {
+        if count > MOST_WARNINGS {
+            let more = count - MOST_WARNINGS;
+            self.stage(stage, "warning", &format!("and {more} more; the report and `manifest.json` have all"));
+        }
+    }
+
     #[must_use]
     pub fn new(quiet: bool, width: usize, bars: Option<MultiProgress>) -> Self {
         Self { quiet, width, bars, running: Mutex::default(), writing: Mutex::default() }
@@ -228,13 +236,13 @@ impl Observer for Watcher {
                     self.stage(stage, "warning", message);
                 }
             }
+            Event::Recalled { stage, warnings } => {
+                warnings.iter().take(MOST_WARNINGS).for_each(|message| self.stage(stage, "warning", message));
+                self.more_warnings(stage, warnings.len());
+            }
             Event::Finished { stage, seconds } => {
                 let running = self.end(stage);
-                let warned = running.warned;
-                if warned > MOST_WARNINGS {
-                    let more = warned - MOST_WARNINGS;
-                    self.stage(stage, "warning", &format!("and {more} more; the report and `manifest.json` have all"));
-                }
+                self.more_warnings(stage, running.warned);
                 // As long as somebody waited, which parts side by side shorten.
                 let wall = running.since.map_or(*seconds, |_| running.elapsed(Instant::now()));
                 self.stage(stage, "ran", &format!("{:>9}  {}", duration(wall), running.why));

@@ -131,9 +131,12 @@ pub(super) fn is_up_to_date(
     if names.len() < notes.len() {
         return Ok(false);
     }
-    for note in notes.iter().filter(|_| !how.quiet) {
-        let folder = Folder::new(&places.results, &note.study);
-        tell(&nothing_to_do(&note.study, note.stages, &folder));
+    for note in &notes {
+        note.tell_warnings(&Watcher::new(how.is_silent(), 0, None));
+        if !how.quiet {
+            let folder = Folder::new(&places.results, &note.study);
+            tell(&nothing_to_do(&note.study, note.stages, &folder));
+        }
     }
     Ok(!notes.is_empty())
 }

@@ -3,26 +3,37 @@
 //! Symbols and words of ISO 21771 and ISO 6336, of the American standards, and of the programs whose printouts users have.
 //! Must not know: which stage a field belongs to.
 
-use std::f64::consts::TAU;
+mod german;
+mod remedies;
 
-use declare::number::significant;
-use declare::units::{ANGULAR_SPEED, Dimension, LENGTH, POWER, Quantity, TORQUE, in_unit, parse_quantity};
-use studygraph::program::{Around, Foreign};
+pub use remedies::DERIVED;
+
+use german::GERMAN;
+use remedies::{half_of, of_diametral_pitch, of_force, of_gear_torque, of_power, twice};
+use studygraph::program::Foreign;
+
+const GEARS: &[&str] = &["pinion", "gear"];
+const RACK: &[&str] = &["rack"];
 
 const fn word(word: &'static str, field: &'static str) -> Foreign {
-    Foreign { word, field: Some(field), remark: "", is_other: false, remedy: None }
+    remarked(word, field, "")
 }
 
 const fn remarked(word: &'static str, field: &'static str, remark: &'static str) -> Foreign {
-    Foreign { word, field: Some(field), remark, is_other: false, remedy: None }
+    Foreign { word, field: Some(field), inside: &[], remark, is_other: false, remedy: None }
+}
+
+/// A word that means this field in these mappings alone.
+const fn within(inside: &'static [&'static str], foreign: Foreign) -> Foreign {
+    Foreign { inside, ..foreign }
 }
 
 const fn half(word: &'static str, field: &'static str) -> Foreign {
-    Foreign { remedy: Some(half_of), ..remarked(word, field, "a radius, half of the diameter") }
+    Foreign { remedy: Some(half_of), ..within(GEARS, remarked(word, field, "a radius, half of the diameter")) }
 }
 
 const fn none(word: &'static str, remark: &'static str) -> Foreign {
-    Foreign { word, field: None, remark, is_other: false, remedy: None }
+    Foreign { word, field: None, inside: &[], remark, is_other: false, remedy: None }
 }
 
 /// Another quantity than the field's, which the remark says how to find.
@@ -31,7 +42,11 @@ const fn other(word: &'static str, field: &'static str, remark: &'static str) ->
 }
 
 const fn power(word: &'static str) -> Foreign {
-    Foreign { remedy: Some(of_power), ..other(word, "torque", "the torque on the pinion is T = P/(2 pi n)") }
+    Foreign { remedy: Some(of_power), ..other(word, "torque", OF_POWER) }
+}
+
+const fn tangential_force(word: &'static str) -> Foreign {
+    Foreign { remedy: Some(of_force), ..other(word, "torque", OF_FORCE) }
 }
 
 const fn gear_torque(word: &'static str) -> Foreign {
@@ -51,8 +66,27 @@ const fn clearance(word: &'static str) -> Foreign {
     other(word, "dedendum", CLEARANCE)
 }
 
+const fn fillet(word: &'static str) -> Foreign {
+    within(
+        RACK,
+        remarked(word, "tip_radius", "the fillet of the root is the tip radius of the tool, rho_fP over the module"),
+    )
+}
+
+const fn thickness(word: &'static str) -> Foreign {
+    other(word, "tooth_thickness", THICKNESS)
+}
+
 const fn hardness(word: &'static str) -> Foreign {
     other(word, "hardness", "Brinell, a plain number; convert other scales by the tables of ISO 18265")
+}
+
+const fn grade(word: &'static str) -> Foreign {
+    remarked(word, "tolerance_class", "of ISO 1328-1")
+}
+
+const fn agma(word: &'static str) -> Foreign {
+    other(word, "tolerance_class", "of ISO 1328-1; older AGMA numbers count the other way")
 }
 
 const SPUR: &str = "spur gears only: there is no helix, and every section is the transverse section";
@@ -67,62 +101,31 @@ const BACKLASH: &str = "backlash follows from the thickness of the teeth of each
                         `centre_distance`";
 const CLEARANCE: &str = "the clearance is m(h_fP* - h_aP*) where the centre distance is nominal: with an addendum of 1 a clearance \
                          of 0.25 m is a dedendum of 1.25";
+const MODIFICATION: &str = "modifications of the flanks are the designs of a stage of `kind: modification`, such as \
+                            `tip_relief: { gear: pinion, amount: 20 um, length: 4 mm }`";
+const THICKNESS: &str = "by an `allowance` of the thickness, a `span` over teeth or a size `over_balls`, such as \
+                         `tooth_thickness: { allowance: { upper: -60 um, lower: -90 um } }`";
+const OF_POWER: &str = "the torque on the pinion is T = P/(2 pi n), n in revolutions per second of the pinion";
+const OF_FORCE: &str = "T = F_t d1/2, of the tangential force F_t at the reference circle of the pinion, d1 = m z1";
+const OF_LINE_LOAD: &str =
+    "T = w b d1/2, of the load w per face width b at the reference circle of the pinion, d1 = m z1";
+const RIM: &str = "the radius of the root circle minus the thickness of the rim";
+const COMPUTED: &str = "it follows from the geometry and is computed: it is in the tables of the pair";
+const STIFFNESS: &str = "the stiffness of the teeth is computed from their geometry by the `method`";
+const MISALIGNMENT: &str = "the slope of the contact line over the face width: a `helix_slope` of the load case, or `parallelism_in_plane` and \
+                            `parallelism_out_of_plane` of the axes";
+const PITCH: &str = "pitch deviations of single teeth are stated as `pinion` and `gear` of `kind: hunting`; tolerances by \
+                     `tolerance_class` belong to `kind: rating`";
 const RATIO: &str = "the gear ratio follows from the numbers of teeth; give `teeth` of pinion and gear";
 const REFERENCE: &str = "reference and base circles follow from the module, the teeth and the pressure angle: d = m z, \
                          d_b = d cos(alpha)";
 const ROOT: &str =
     "the root circle follows from the tool: d_f = m(z + 2 x - 2 h_fP*), with `dedendum` of `rack` as h_fP*";
 
-/// The number of a quantity, if it has this dimension.
-fn si(quantity: Option<Quantity>, dimension: Dimension) -> Option<f64> {
-    quantity.filter(|read| read.dimension == dimension).map(|read| read.value)
-}
+/// Words of others, by language. Of those with several fields the likeliest is the first.
+pub static FOREIGN: &[&[Foreign]] = &[ENGLISH, GERMAN];
 
-/// A number that reads back, with as many digits as a user would write.
-fn shown(si: f64, unit: &str) -> String {
-    let value = in_unit(si, unit);
-    format!("{} {unit}", format!("{value:.6e}").parse().unwrap_or(value))
-}
-
-fn half_of(around: &Around) -> Option<String> {
-    Some(format!("write `{}`", shown(0.5 * si(around.value, LENGTH)?, "mm")))
-}
-
-/// T = P/ω, of a speed beside it.
-fn of_power(around: &Around) -> Option<String> {
-    let power = si(around.value, POWER)?;
-    let speed =
-        ["speed", "n", "rpm", "n1", "rotational_speed", "input_speed", "pinion_speed"].iter().find_map(|name| {
-            let read = (around.beside)(name)?;
-            match read.dimension {
-                ANGULAR_SPEED => Some(read.value),
-                // A speed without a unit is in turns per minute where its name says so.
-                _ if !read.has_unit && *name == "rpm" => Some(read.value * TAU / 60.0),
-                _ => None,
-            }
-        })?;
-    let torque = (speed > 0.0).then(|| power / speed)?;
-    let (power, speed) = (significant(in_unit(power, "kW"), 6), significant(in_unit(speed, "rpm"), 6));
-    Some(format!("{power} kW at {speed} rpm of the pinion: write `torque: {}`", shown(torque, "N m")))
-}
-
-fn of_gear_torque(around: &Around) -> Option<String> {
-    let torque = si(around.value, TORQUE)?;
-    let teeth = |gear: &str| Some((around.anywhere)(&[gear, "teeth"])?.value).filter(|teeth| *teeth > 0.0);
-    let (pinion, gear) = (teeth("pinion")?, teeth("gear")?);
-    Some(format!("with {pinion} and {gear} teeth write `torque: {}`", shown(torque * pinion / gear, "N m")))
-}
-
-/// Of a plain number, or one per inch.
-fn of_diametral_pitch(around: &Around) -> Option<String> {
-    let read = around.value.filter(|read| read.value > 0.0)?;
-    let inch = parse_quantity("25.4 mm").ok()?.value;
-    let module = if read.has_unit { None } else { Some(inch / read.value) };
-    Some(format!("write `module: {}`", shown(module?, "mm")))
-}
-
-/// Words of others. One with several fields has the likeliest first.
-pub static FOREIGN: &[Foreign] = &[
+static ENGLISH: &[Foreign] = &[
     word("z", "teeth"),
     word("number_of_teeth", "teeth"),
     word("tooth_count", "teeth"),
@@ -133,7 +136,6 @@ pub static FOREIGN: &[Foreign] = &[
     word("n_teeth", "teeth"),
     word("m", "module"),
     word("m_n", "module"),
-    word("mn", "module"),
     word("normal_module", "module"),
     word("transverse_module", "module"),
     word("m_t", "module"),
@@ -157,6 +159,17 @@ pub static FOREIGN: &[Foreign] = &[
     word("width", "face_width"),
     word("tooth_width", "face_width"),
     word("breadth", "face_width"),
+    word("basic_rack", "rack"),
+    word("tool", "rack"),
+    word("hob", "rack"),
+    word("fem", "finite_element"),
+    word("fea", "finite_element"),
+    word("fe", "finite_element"),
+    word("potential_energy", "energy"),
+    word("energy_method", "energy"),
+    word("weber", "weber_banaschek"),
+    word("iso", "iso6336"),
+    within(&["gear"], word("wheel", "gear")),
     word("a", "centre_distance"),
     word("a_w", "centre_distance"),
     word("center_distance", "centre_distance"),
@@ -174,15 +187,43 @@ pub static FOREIGN: &[Foreign] = &[
     half("outside_diameter", "tip_radius"),
     half("outer_diameter", "tip_radius"),
     half("addendum_diameter", "tip_radius"),
+    half("d_i", "bore_radius"),
+    half("tip_circle_diameter", "tip_radius"),
+    other("rim_thickness", "bore_radius", RIM),
+    other("rim", "bore_radius", RIM),
+    thickness("span"),
+    thickness("w_k"),
+    thickness("span_measurement"),
+    thickness("base_tangent_length"),
+    thickness("over_balls"),
+    thickness("over_pins"),
+    thickness("m_dk"),
+    thickness("s_n"),
+    none("contact_ratio", COMPUTED),
+    none("eps_alpha", COMPUTED),
+    none("epsilon_alpha", COMPUTED),
+    none("c_gamma", STIFFNESS),
+    none("mesh_stiffness", STIFFNESS),
     word("k", "tip_shortening"),
     word("h_ap", "addendum"),
     word("h_fp", "dedendum"),
     word("addendum_coefficient", "addendum"),
     word("dedendum_coefficient", "dedendum"),
-    word("rho_fp", "tip_radius"),
+    within(RACK, word("rho_fp", "tip_radius")),
+    within(RACK, word("rho_a0", "tip_radius")),
+    fillet("root_radius"),
+    fillet("fillet_radius"),
+    fillet("root_fillet"),
+    fillet("root_fillet_radius"),
+    fillet("tool_tip_radius"),
+    fillet("edge_radius"),
     other("root_diameter", "rack", ROOT),
     other("root_radius", "rack", ROOT),
     other("d_f", "rack", ROOT),
+    none("d", REFERENCE),
+    none("d_p", REFERENCE),
+    none("d_w", WORKING),
+    none("working_pitch_diameter", WORKING),
     none("pitch_diameter", REFERENCE),
     none("reference_diameter", REFERENCE),
     none("pitch_radius", REFERENCE),
@@ -198,7 +239,6 @@ pub static FOREIGN: &[Foreign] = &[
     backlash("normal_backlash"),
     backlash("j_t"),
     backlash("j_n"),
-    backlash("jn"),
     none("backlash", BACKLASH),
     clearance("clearance"),
     clearance("tip_clearance"),
@@ -220,7 +260,6 @@ pub static FOREIGN: &[Foreign] = &[
     remarked("pinion_torque", "torque", PINION),
     remarked("torque_pinion", "torque", PINION),
     remarked("t1", "torque", PINION),
-    remarked("t_1", "torque", PINION),
     remarked("input_torque", "torque", DRIVER),
     remarked("driving_torque", "torque", DRIVER),
     remarked("driver_torque", "torque", DRIVER),
@@ -235,12 +274,11 @@ pub static FOREIGN: &[Foreign] = &[
     gear_torque("torque2"),
     gear_torque("t2"),
     gear_torque("t_2"),
-    other("force", "torque", "T = F_t d1/2, of the tangential force F_t at the reference circle of the pinion"),
-    other(
-        "tangential_force",
-        "torque",
-        "T = F_t d1/2, of the tangential force F_t at the reference circle of the pinion",
-    ),
+    tangential_force("force"),
+    tangential_force("tangential_force"),
+    tangential_force("f_t"),
+    other("line_load", "torque", OF_LINE_LOAD),
+    other("specific_load", "torque", OF_LINE_LOAD),
     other("normal_force", "torque", "T = F_bn d_b1/2, of the normal force F_bn and the base circle of the pinion"),
     power("power"),
     power("kw"),
@@ -248,9 +286,12 @@ pub static FOREIGN: &[Foreign] = &[
     power("nominal_power"),
     power("rated_power"),
     power("input_power"),
-    word("c_a", "amount"),
-    word("ca", "amount"),
-    word("c_beta", "amount"),
+    within(&["tip_relief"], word("c_a", "amount")),
+    within(&["root_relief"], word("c_f", "amount")),
+    within(&["profile_crowning"], word("c_alpha", "amount")),
+    Foreign { remedy: Some(twice), ..remarked("start_radius", "start_diameter", "twice the radius") },
+    within(&["lead_crowning"], word("c_beta", "amount")),
+    other("c_beta", "lead_crowning", "the crowning height of a `lead_crowning`"),
     word("depth", "amount"),
     word("l_ca", "length"),
     none("helix_angle", SPUR),
@@ -285,9 +326,26 @@ pub static FOREIGN: &[Foreign] = &[
     none("n1", SPEED),
     none("omega", SPEED),
     word("rho", "density"),
+    none("tip_relief", MODIFICATION),
+    none("root_relief", MODIFICATION),
+    none("end_relief", MODIFICATION),
+    none("crowning", MODIFICATION),
+    none("lead_crowning", MODIFICATION),
+    none("profile_crowning", MODIFICATION),
+    none("modifications", MODIFICATION),
     none("damping", STATIC),
+    none("inertia", STATIC),
+    none("moment_of_inertia", STATIC),
+    none("mass", STATIC),
+    other("misalignment", "helix_slope", MISALIGNMENT),
+    other("f_sigma_gamma", "helix_slope", MISALIGNMENT),
+    other("f_beta_x", "helix_slope", MISALIGNMENT),
+    other("f_beta_y", "helix_slope", MISALIGNMENT),
+    none("f_pt", PITCH),
+    none("f_p", PITCH),
+    none("pitch_error", PITCH),
+    none("pitch_deviation", PITCH),
     word("k_a", "application_factor"),
-    word("ka", "application_factor"),
     word("service_factor", "application_factor"),
     word("overload_factor", "application_factor"),
     none("k_a", "the torque is the load as it is: multiply it by K_A; `kind: rating` takes an `application_factor`"),
@@ -305,16 +363,24 @@ pub static FOREIGN: &[Foreign] = &[
     none("hardness", HARDNESS),
     none("hb", HARDNESS),
     none("hv", HARDNESS),
-    remarked("quality", "tolerance_class", "of ISO 1328-1"),
-    remarked("quality_grade", "tolerance_class", "of ISO 1328-1"),
-    remarked("accuracy_grade", "tolerance_class", "of ISO 1328-1"),
-    remarked("iso_quality", "tolerance_class", "of ISO 1328-1"),
-    other("agma_quality", "tolerance_class", "of ISO 1328-1; older AGMA numbers count the other way"),
+    grade("quality"),
+    grade("quality_grade"),
+    grade("accuracy_grade"),
+    grade("iso_quality"),
+    agma("agma_quality"),
+    agma("agma"),
+    agma("agma_number"),
+    none("agma_quality", AGMA),
+    none("agma", AGMA),
+    none("agma_number", AGMA),
     none("quality", QUALITY),
     none("quality_grade", QUALITY),
     none("accuracy_grade", QUALITY),
 ];
 
+const AGMA: &str =
+    "a quality grade is the `tolerance_class` (ISO 1328-1) of `kind: rating`; older AGMA numbers count the other way";
+const WORKING: &str = "pitch circles follow from the centre distance and the numbers of teeth: d_w1 = 2 a z1/(z1 + z2)";
 const HARDNESS: &str = "hardness matters to strength alone: `kind: rating` takes `contact_strength` and `bending_strength` (sigma_Hlim and \
                         sigma_FE by ISO 6336-5), and a Brinell `hardness` of a soft gear";
 const QUALITY: &str = "a quality grade is the `tolerance_class` (ISO 1328-1) of `kind: rating`; transmission errors take measured or \

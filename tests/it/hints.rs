@@ -197,3 +197,162 @@ fn words_and_units_of_the_trade_have_a_remedy() {
     let negative = geometry("gear: { teeth: -60, face_width: 20 mm, bore_radius: 30 mm }");
     assert!(negative.contains("only external gears are modelled"), "{negative}");
 }
+
+/// Messages of a whole study; every part that is given stands in the place of the usual one.
+struct Given<'a> {
+    geometry: &'a str,
+    pinion: &'a str,
+    stiffness: &'a str,
+    design: &'a str,
+    ste: &'a str,
+}
+
+const USUAL: Given = Given { geometry: "", pinion: "", stiffness: "", design: "", ste: "torque: 100 N m" };
+
+fn whole(given: &Given) -> String {
+    let Given { geometry, pinion, stiffness, design, ste } = given;
+    let text = format!(
+        "study: hints\nstages:\n  pair:\n    kind: geometry\n    module: 2 mm\n    {geometry}\n    \
+         pinion: {{ teeth: 20, face_width: 20 mm, bore_radius: 10 mm, {pinion} }}\n    \
+         gear: {{ teeth: 60, face_width: 20 mm, bore_radius: 30 mm }}\n  \
+         stiffness: {{ kind: stiffness, pair: pair, {stiffness} }}\n  \
+         designs: {{ kind: modification, pair: pair, designs: {{ plain: [{design}] }} }}\n  \
+         ste: {{ kind: ste, stiffness: stiffness, designs: designs, {ste} }}\n"
+    );
+    program::load_text(&text, Path::new("hints.yaml")).map_or_else(|error| error.to_string(), |_| String::new())
+}
+
+/// Every text of `has` is in the message, and none of `lacks`.
+fn says(said: &str, written: &str, has: &[&str], lacks: &[&str]) {
+    assert!(has.iter().all(|part| said.contains(part)), "{written} lacks one of {has:?}: {said}");
+    assert!(!lacks.iter().any(|part| said.contains(part)), "{written} has one of {lacks:?}: {said}");
+}
+
+/// Tier: closed form; both numbers of an interval count in the module, and no help is refused in its turn.
+#[test]
+fn intervals_of_lengths_are_offered_in_modules() {
+    for (text, has) in [
+        ("0.4 mm ± 0.02 mm", "write `0.2 ± 0.01`"),
+        ("0.4 mm ± 20 um", "write `0.2 ± 0.01`"),
+        ("0.4 ± 0.02 mm", "write `0.2 ± 0.01`, or `0.4 ± 0.01`"),
+        ("0.4 mm ± 0.02", "write `0.2 ± 0.01`, or `0.2 ± 0.02`"),
+        ("0.4 mm ± 5 %", "write `0.2 ± 0.01`"),
+        ("0.02 in ± 0.001 in", "write `0.254 ± 0.0127`"),
+        ("0.4 +/- 0.02 m", "for 0.4 ± 0.02 times the module write `0.4 ± 0.02`"),
+        ("0.4(2) mm", "write `0.2 ± 0.1`"),
+        ("0.4 mm +0.02 -0.01", "as wide to both sides"),
+        ("0.4 +0.02/-0.01 mm", "as wide to both sides"),
+        ("1 deg ± 0.1 deg", "another quantity"),
+    ] {
+        let said = whole(&Given { pinion: &format!("profile_shift: {text}"), ..USUAL });
+        says(&said, text, &[has], &["write `0.01`", "write `0.4 mm", "write `0.0127`"]);
+    }
+    let without = geometry("rack: { addendum: 2 mm ± 0.05 mm }").replace("module: 2 mm", "");
+    says(&without, "addendum", &["write `1 ± 0.025`"], &[]);
+    for (text, number) in [("0,4 mm", "0.2"), ("0.3*m", "0.3"), ("0.3 m_n", "0.3"), ("0.3 modules", "0.3")] {
+        let said = whole(&Given { pinion: &format!("profile_shift: {text}"), ..USUAL });
+        says(&said, text, &[&format!("write `{number}`")], &["write `0.3 m`", "write `0.4 mm`"]);
+    }
+}
+
+/// Tier: closed form; T = P/(2 pi n) and T = F d/2, with the numbers of the study.
+#[test]
+fn another_quantity_has_the_rule_that_leads_to_the_field() {
+    for (ste, has) in [
+        ("torque: 10 kW", "T = P/(2 pi n), n in revolutions per second"),
+        ("torque: 10 hp", "T = P/(2 pi n)"),
+        ("torque: [10 kW, 20 kW]", "T = P/(2 pi n)"),
+        ("torque: 10 kW, speed: 1500 rpm", "write `torque: 63.66198 N m`"),
+        ("torque: 10 kW, friction: { law: { constant: { coefficient: 0.05 } }, speed: 1500 rpm }", "63.66198 N m"),
+        ("power: 10 kW", "n in revolutions per second"),
+        ("torque: 5 kN", "write `torque: 100 N m`"),
+        ("load: 5 kN", "T = F_t d1/2"),
+        ("torque: 200 N/mm", "face width"),
+        ("torque: 100 Nmm2", "known here: `N m`, `N mm`"),
+        ("torque: 100 N m^2", "a quantity in m^3 kg s^-2"),
+    ] {
+        let said = whole(&Given { ste, ..USUAL });
+        says(&said, ste, &[has], &["is a quantity;", "which is a quantity;", "of another kind"]);
+    }
+}
+
+/// Tier: invariant; where a word means another thing in another mapping it is answered there by what it means there.
+#[test]
+fn words_mean_what_they_mean_where_they_stand() {
+    for (geometry, has, lacks) in [
+        ("rack: { root_radius: 0.38 }", "`tip_radius`: the fillet", "in another place"),
+        ("rack: { fillet_radius: 0.38 }", "`tip_radius`: the fillet", "in another place"),
+        ("rack: { tip_diameter: 44 mm }", "known here", "half of"),
+        ("rack: { d_a: 44 mm }", "known here", "half of"),
+        ("rack: { clearance: 0.25 }", "`dedendum`", "in another place"),
+        ("addendum: 1.0", "`rack`", "did you mean"),
+        ("basic_rack: A", "`rack`", "did you mean"),
+        ("rack: { haP: 1.0 }", "called `addendum`", ""),
+        ("AGMA: 10", "the other way", "did you mean"),
+        ("Achsabstand: 90 mm", "called `centre_distance`", ""),
+        ("Flankenspiel: 0.1 mm", "allowances", ""),
+        ("tip_relief: 20 um", "`kind: modification`", ""),
+        ("contact_ratio: 1.5", "follows", ""),
+        ("pressure_angle: 20 grad", "write `deg`", "`rad`?"),
+        ("pressure_angle: 20°30'", "write `20.5 deg`", ""),
+        ("material: { density: 7.85 }", "for example `7830 kg/m^3`", "`7.85 kg/m^3`"),
+        ("material: { E: 210 }", "called `youngs_modulus`", ""),
+        ("material: { E-Modul: 210 GPa }", "called `youngs_modulus`", ""),
+        ("module: 8 DP", "diametral pitch", ""),
+    ] {
+        let said = match geometry.strip_prefix("module: ") {
+            Some(module) => whole(&Given { geometry: &format!("centre_distance: {module}"), ..USUAL }),
+            None => whole(&Given { geometry, ..USUAL }),
+        };
+        says(&said, geometry, &[has], if lacks.is_empty() { &[] } else { std::slice::from_ref(&lacks) });
+    }
+    for (pinion, has, lacks) in [
+        ("da: 44 mm", "write `22 mm`", ""),
+        ("Kopfkreisdurchmesser: 44 mm", "write `22 mm`", ""),
+        ("df: 35 mm", "d_f = m(z + 2 x - 2 h_fP*)", ""),
+        ("db: 37.6 mm", "d_b = d cos(alpha)", ""),
+        ("d: 40 mm", "d = m z", ""),
+        ("rho_fP: 0.38", "`rack`", "called `tip_radius`"),
+        ("fillet_radius: 0.38", "`rack`", "called `tip_radius`"),
+        ("Profilverschiebung: 0.6 mm", "write `0.3`", ""),
+        ("Profilverschiebungsfaktor: 0.3", "called `profile_shift`", ""),
+        ("Schrägungswinkel: 15 deg", "spur gears only", ""),
+        ("crowning: 10 um", "`kind: modification`", "did you mean"),
+        ("Kopfrücknahme: 20 um", "`tip_relief`", ""),
+        ("rim_thickness: 5 mm", "`bore_radius`", "here it is called"),
+        ("W_k: 15.3 mm", "`tooth_thickness`", ""),
+        ("tooth_thickness: 3.1 mm", "takes fields, not a number", "unknown name"),
+    ] {
+        let said = whole(&Given { pinion, ..USUAL });
+        says(&said, pinion, &[has], if lacks.is_empty() { &[] } else { std::slice::from_ref(&lacks) });
+    }
+    for (design, has, lacks) in [
+        ("crowning: { gear: pinion, amount: 10 um }", "did you mean `profile_crowning` or `lead_crowning`?", ""),
+        ("relief: { gear: pinion, amount: 10 um }", "`root_relief`", "did you mean `tip_relief`?"),
+        ("Kopfrücknahme: { gear: pinion, amount: 10 um, length: 1 mm }", "called `tip_relief`", ""),
+        ("Breitenballigkeit: { gear: pinion, amount: 10 um }", "called `lead_crowning`", ""),
+        ("tip_relief: { gear: pinion, c_beta: 10 um, length: 1 mm }", "`lead_crowning`", "called `amount`"),
+        ("tip_relief: { gear: wheel, amount: 10 um, length: 1 mm }", "called `gear`", ""),
+        ("tip_relief: { gear: pinion, amount: 20 um, start_radius: 21 mm }", "write `42 mm`", ""),
+        ("tip_relief: { gear: pinion, amount: 0.02, length: 1 mm }", "`0.02 mm`", "`0.02 um`"),
+    ] {
+        let said = whole(&Given { design, ..USUAL });
+        says(&said, design, &[has], if lacks.is_empty() { &[] } else { std::slice::from_ref(&lacks) });
+    }
+    for (stiffness, has) in [
+        ("method: FEM", "called `finite_element`"),
+        ("method: potential_energy", "called `energy`"),
+        ("c_gamma: 20 N/(mm um)", "is computed"),
+    ] {
+        says(&whole(&Given { stiffness, ..USUAL }), stiffness, &[has], &[]);
+    }
+    for (ste, has) in [
+        ("Drehmoment: 100 Nm", "called `torque`"),
+        ("Leistung: 10 kW, Drehzahl: 1500 rpm", "write `torque: 63.66198 N m`"),
+        ("misalignment: 10 um", "helix_slope"),
+        ("fpt: 10 um", "pitch deviations"),
+        ("inertia: 0.1 kg m^2", "at rest"),
+    ] {
+        says(&whole(&Given { ste: &format!("{ste}, torque: 100 N m"), ..USUAL }), ste, &[has], &[]);
+    }
+}

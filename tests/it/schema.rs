@@ -142,6 +142,32 @@ fn the_yaml_language_server_finds_mistakes_and_speaks_in_words() {
     python::run("yaml_language_server.py", &[server.as_os_str()]);
 }
 
+/// Names of studies as they are written, their values to readers of YAML 1.2 as JSON, and whether these are names; `schema.py` holds
+/// the schema to the same table.
+const NAMES: &str = include_str!("../python/names_of_studies.tsv");
+
+/// Tier: invariant; the program takes a name as it is written if and only if the schema takes its value.
+#[test]
+fn schema_and_program_agree_about_names() {
+    let mut tried = 0;
+    for line in NAMES.lines().filter(|line| !line.starts_with('#')) {
+        let [written, _, name] = line.split('\t').collect::<Vec<_>>()[..] else { panic!("{line}") };
+        let text = format!(
+            "study: {written}\nstages:\n  pair:\n    kind: geometry\n    module: 3 mm\n    \
+             pinion: {{ teeth: 20, face_width: 20 mm, bore_radius: 10 mm }}\n    \
+             gear: {{ teeth: 30, face_width: 20 mm, bore_radius: 10 mm }}\n"
+        );
+        let read = gearstudy::program::load_text(&text, Path::new("named.yaml"));
+        let found = read.as_ref().map_or("-", |study| study.name.as_str());
+        assert_eq!(found, name, "{written}");
+        if name != "-" {
+            assert_eq!(studygraph::study::identity::stated_name(&text).as_deref(), Some(name), "{written}");
+        }
+        tried += 1;
+    }
+    assert!(tried > 30, "{tried}");
+}
+
 /// What another validator accepts in `schema.py` the program accepts too: names that are numbers, spaces that do not break a line,
 /// block scalars and merged stages.
 #[test]

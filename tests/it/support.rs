@@ -9,6 +9,7 @@ pub fn with_code(study: Study, code_of: fn(&str) -> String) -> Study {
     let program = Program {
         kinds: PROGRAM.kinds,
         foreign: PROGRAM.foreign,
+        derived: PROGRAM.derived,
         named: PROGRAM.named,
         code_of,
         counters: PROGRAM.counters,

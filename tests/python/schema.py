@@ -62,6 +62,12 @@ for name, change in same.items():
     assert not errors, f"refused: {name}: {errors}"
 for name in [2024.5, -3]:
     assert not validator.is_valid({**quick, "study": name}), f"accepted: {name}"
+# The program takes the same names, as `tests/it/schema.rs` compares.
+for line in pathlib.Path("tests/python/names_of_studies.tsv").read_text().splitlines():
+    if not line.startswith("#"):
+        written, value, name = line.split("\t")
+        is_valid = validator.is_valid({**quick, "study": json.loads(value)})
+        assert is_valid == (name != "-"), f"{written}: {'accepted' if is_valid else 'refused'}"
 # Editors see the key of a merge, which other readers resolve.
 for keys in [schema["properties"]["stages"]["propertyNames"], schema["properties"]["set"]["propertyNames"]]:
     assert re.search(keys["pattern"], "<<") and not re.search(keys["pattern"], "<")

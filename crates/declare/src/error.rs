@@ -166,16 +166,27 @@ impl From<Faults> for Failure {
 #[must_use]
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let mut best: Option<(f64, &str)> = None;
+    let mut with_word = 0;
     for candidate in known {
+        let is_word = is_word_of(name, candidate);
+        with_word += usize::from(is_word);
         let likeness = strsim::normalized_damerau_levenshtein(name, candidate).max(
             // A name that is a word of a longer one (`addendum` of `addendum_coefficient`) is a likely slip too.
-            if !name.is_empty() && candidate.split('_').any(|word| word == name) { 0.7 } else { 0.0 },
+            if is_word { WORD_LIKENESS } else { 0.0 },
         );
         if likeness >= 0.5 && best.is_none_or(|(so_far, _)| likeness > so_far) && may_mean(name, candidate) {
             best = Some((likeness, candidate));
         }
     }
-    best.map(|(_, candidate)| candidate)
+    // `crowning` is as much of `profile_crowning` as of `lead_crowning`: which one is meant is not for a message to say.
+    best.filter(|(likeness, _)| with_word < 2 || *likeness > WORD_LIKENESS).map(|(_, candidate)| candidate)
+}
+
+/// Likeness of a name to a longer one of which it is a word.
+const WORD_LIKENESS: f64 = 0.7;
+
+fn is_word_of(name: &str, candidate: &str) -> bool {
+    !name.is_empty() && candidate != name && candidate.split('_').any(|word| word == name)
 }
 
 /// Words that are alike and mean the opposite of each other.
@@ -270,6 +281,13 @@ pub fn suggest<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone)
     if let Some(candidate) = nearest(name, known.clone()) {
         return format!("did you mean `{candidate}`?");
     }
+    let with_word: Vec<_> = known.clone().into_iter().filter(|candidate| is_word_of(name, candidate)).collect();
+    if let [others @ .., last] = &with_word[..]
+        && !others.is_empty()
+    {
+        let others: Vec<_> = others.iter().map(|name| format!("`{name}`")).collect();
+        return format!("did you mean {} or `{last}`?", others.join(", "));
+    }
     let mut names: Vec<_> = known.into_iter().map(|name| format!("`{name}`")).collect();
     if names.is_empty() {
         return "there are none to choose from".to_owned();
@@ -329,5 +347,8 @@ mod tests {
         ] {
             assert_eq!(nearest(name, [known]), None, "{name}");
         }
+        let crowned = ["profile_crowning", "lead_crowning", "arc"];
+        assert_eq!(nearest("crowning", crowned), None);
+        assert_eq!(suggest("crowning", crowned), "did you mean `profile_crowning` or `lead_crowning`?");
     }
 }

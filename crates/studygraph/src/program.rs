@@ -4,7 +4,7 @@
 
 use crate::about::About;
 use crate::stage::Kind;
-use declare::units::Quantity;
+use declare::units::{Dimension, Quantity};
 use declare::work::Counter;
 
 /// A word that users of other programs and other textbooks know for a field of this one.
@@ -13,11 +13,24 @@ pub struct Foreign {
     pub word: &'static str,
     /// The field that is meant, where there is one.
     pub field: Option<&'static str>,
+    /// The mappings in which it means this; empty where it means this anywhere.
+    pub inside: &'static [&'static str],
     /// What else is to be said: that a radius is half of the diameter, or why there is no such thing.
     pub remark: &'static str,
     /// Whether the field has another quantity, to which the remark says the way.
     pub is_other: bool,
     /// What to write in the field, where the numbers of the study tell.
+    pub remedy: Option<fn(&Around) -> Option<String>>,
+}
+
+/// A field that follows from a quantity of another kind, which users state in its place.
+#[derive(Clone, Copy)]
+pub struct Derived {
+    pub field: &'static str,
+    pub from: Dimension,
+    /// The formula and the meaning of its symbols.
+    pub rule: &'static str,
+    /// The value of the field, if the study has the numbers of the formula.
     pub remedy: Option<fn(&Around) -> Option<String>>,
 }
 
@@ -61,7 +74,9 @@ pub struct Program {
     /// Every kind of stage, in the order in which they are listed to the user.
     pub kinds: &'static [&'static Kind],
     /// What others call its fields.
-    pub foreign: &'static [Foreign],
+    pub foreign: &'static [&'static [Foreign]],
+    /// Rules from quantities of other kinds to its fields.
+    pub derived: &'static [Derived],
     pub named: &'static [Naming],
     /// The digest of the code that the tables of a kind, called by its name, come from; part of every cache key.
     pub code_of: fn(&str) -> String,

@@ -20,6 +20,7 @@ mod stubborn;
 mod texts;
 mod trust;
 mod unread;
+mod warnings;
 mod watch;
 mod work;
 

@@ -20,6 +20,10 @@ const ROCKWELL: &str = "Rockwell hardness has no unit and no formula to other sc
                         convert by the tables of ISO 18265 and write the plain number";
 const VICKERS: &str = "Vickers hardness has no unit; where a field takes Brinell hardness, convert by the tables of ISO 18265 and \
                        write the plain number";
+const DIAMETRAL_PITCH: &str =
+    "a diametral pitch P is stated as the module m = 25.4 mm / P, such as `module: 3.175 mm` for P = 8";
+const GRAD: &str =
+    "for degrees, `Grad` in German, write `deg`; the grad of surveyors, a hundredth of a right angle, is 0.9 deg";
 const BRINELL: &str = "Brinell hardness has no unit: where a field takes it, write the plain number";
 
 /// Words of units in the order of the alphabet: in small letters where these say the same.
@@ -96,12 +100,9 @@ const FOREIGN: &[(&str, ForeignUnit)] = &[
     ("lb/in3", ForeignUnit::Of(27_679.904_71, "kg/m^3")),
     ("cst", ForeignUnit::Of(1.0, "mm^2/s")),
     ("cp", ForeignUnit::Of(1.0, "mPa s")),
-    (
-        "1/in",
-        ForeignUnit::None(
-            "a diametral pitch P is stated as the module m = 25.4 mm / P, such as `module: 3.175 mm` for P = 8",
-        ),
-    ),
+    ("1/in", ForeignUnit::None(DIAMETRAL_PITCH)),
+    ("grad", ForeignUnit::None(GRAD)),
+    ("dp", ForeignUnit::None(DIAMETRAL_PITCH)),
     ("hrc", ForeignUnit::None(ROCKWELL)),
     ("hra", ForeignUnit::None(ROCKWELL)),
     ("hrb", ForeignUnit::None(ROCKWELL)),

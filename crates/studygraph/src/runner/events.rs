@@ -27,6 +27,11 @@ pub enum Event<'a> {
         stage: &'a str,
         message: &'a str,
     },
+    /// The warnings of the run that computed a stage, whose tables are up to date.
+    Recalled {
+        stage: &'a str,
+        warnings: &'a [String],
+    },
     /// A file of the results is about to be made and written.
     Publishing {
         file: &'a str,

@@ -88,6 +88,7 @@ pub fn run(
         outcome = execute(study, cache, options, observer, stop)?;
         published = publish(&mut outcome);
     }
+    recall_warnings(&outcome, observer);
     for message in &warnings(cache, &outcome) {
         observer.event(&Event::Warning { message });
     }
@@ -131,6 +132,9 @@ pub fn run_part(
     if let Err(StoreError::Damaged { .. } | StoreError::Format { .. }) | Ok(None) = published {
         return Ok(None);
     }
+    recall_warnings(&outcome, observer);
+    let is_read = |stage: &str| outcome.stages.iter().any(|read| read.name == stage);
+    part.note.tell_warnings_of(|stage| !is_read(stage), observer);
     for message in &warnings(cache, &outcome) {
         observer.event(&Event::Warning { message });
     }
@@ -138,6 +142,13 @@ pub fn run_part(
     let recalled = || Some(Cow::Borrowed(part.recalled()));
     note::keep(&part.study, (cache, options, folder), (&outcome, &published), recalled, Some(&part.note));
     Ok(Some((outcome, published)))
+}
+
+/// Repeats the warnings of stages that were not computed, so that a run of the same study says the same.
+fn recall_warnings(outcome: &Outcome, observer: &dyn Observer) {
+    for stage in outcome.stages.iter().filter(|stage| stage.ran == 0 && !stage.warnings.is_empty()) {
+        observer.event(&Event::Recalled { stage: &stage.name, warnings: &stage.warnings });
+    }
 }
 
 /// Publishes by `publish`, which is given what the run has to say, and where tables come from.

@@ -14,6 +14,7 @@ use std::thread;
 
 use serde::{Deserialize, Serialize};
 
+use super::events::{Event, Observer};
 use super::options::{Force, Options};
 use super::outcome::Outcome;
 use super::recall::Recalled;
@@ -25,7 +26,7 @@ use crate::store::results::{Folder, MANIFEST, Published};
 use crate::study::Study;
 use declare::digest::{Digest, Writer};
 
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 
 /// What a run with nothing to do says.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -42,6 +43,10 @@ pub struct Note {
     recalled: Option<String>,
     boot: String,
     files: Vec<(PathBuf, u64, Stamp)>,
+    /// Of the study itself.
+    notes: Vec<String>,
+    /// Of its stages that have any.
+    warnings: Vec<(String, Vec<String>)>,
 }
 
 /// Where a run reads and writes.
@@ -121,6 +126,21 @@ pub(super) fn recalled(at: &Where<'_>, code: &str, options: &Options) -> Option<
 }
 
 impl Note {
+    /// Tells the warnings of the study and of all its stages.
+    pub fn tell_warnings(&self, observer: &dyn Observer) {
+        for message in &self.notes {
+            observer.event(&Event::Warning { message });
+        }
+        self.tell_warnings_of(|_| true, observer);
+    }
+
+    /// Tells the warnings of the stages that are chosen.
+    pub(super) fn tell_warnings_of(&self, is_chosen: impl Fn(&str) -> bool, observer: &dyn Observer) {
+        for (stage, warnings) in self.warnings.iter().filter(|(stage, _)| is_chosen(stage)) {
+            observer.event(&Event::Recalled { stage, warnings });
+        }
+    }
+
     /// Whether all its files in a folder are as they were.
     pub(super) fn holds_in(&self, folder: &Path) -> bool {
         let Ok(folder) = std::path::absolute(folder) else { return false };
@@ -160,8 +180,14 @@ pub(super) fn keep<'r>(
     let before = before.filter(|path| std::path::absolute(cache.root()).is_ok_and(|root| path.starts_with(root)));
     let Some(files) = files((cache, &study.name), folder, outcome, &published.seen, before.cloned()) else { return };
     let (question, code) = (question(&asked, study.text.as_bytes()), study.program.about.code);
+    let notes = study.warnings().collect();
+    let of_run = outcome.stages.iter().map(|stage| (stage.name.clone(), stage.warnings.clone()));
+    let is_unread = |stage: &str| study.unread.iter().any(|unread| unread.name == stage);
+    let of_earlier = earlier.iter().flat_map(|note| &note.warnings).filter(|(stage, _)| is_unread(stage)).cloned();
+    let warnings = of_run.chain(of_earlier).filter(|(_, warnings)| !warnings.is_empty()).collect();
     let (study, stages) = (study.name.clone(), outcome.stages.len() + study.unread.len());
-    let mut note = Note { format: FORMAT, study, stages, question, asked, recalled: None, boot: boot(), files };
+    let mut note =
+        Note { format: FORMAT, study, stages, question, asked, recalled: None, boot: boot(), files, notes, warnings };
     let same = |known: &Note| Note { recalled: note.recalled.clone(), ..known.clone() } == note;
     if unchanged(&at, code, options).is_some_and(|earlier| same(&earlier)) {
         return;

@@ -99,6 +99,10 @@ impl Recalled {
     /// What is to be kept of a study that came to its end. None where its text is not plain.
     #[must_use]
     pub fn of(study: &Study, options: &Options) -> Option<Self> {
+        // Notes on the text, such as of intervals without effect, are known of a study that is read as a whole.
+        if !study.notes.is_empty() {
+            return None;
+        }
         let graph = Graph::new(study, &options.wanted).ok()?;
         let blocks = Blocks::cut(&study.text)?;
         let all: Vec<usize> = (0..blocks.stages.len()).collect();

@@ -243,6 +243,7 @@ impl Spec {
 static PROGRAM: Program = Program {
     kinds: &[],
     foreign: &[],
+    derived: &[],
     named: &[],
     code_of: |_| String::from("code"),
     counters: &[],
@@ -252,6 +253,7 @@ static PROGRAM: Program = Program {
 static OTHER: Program = Program {
     kinds: &[],
     foreign: &[],
+    derived: &[],
     named: &[],
     code_of: |_| String::from("other code"),
     counters: &[],

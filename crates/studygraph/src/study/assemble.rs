@@ -8,6 +8,7 @@ use super::blame::Blame;
 use super::blocks::Blocks;
 use super::decode::Decoder;
 use super::document::{Content, KeyValue, Node as Tree, parse};
+use super::identity::plain_name;
 use super::links::Draft;
 use super::overrides::Stages;
 use super::path::FieldPath;
@@ -104,7 +105,8 @@ fn sound_tree(
     let empty = || Diagnostic::new("the file is empty").at(start).help(help);
     let root = root.filter(|root| !root.is_null()).ok_or_else(empty)?;
     let values = root.values();
-    let root = files::expanded(with_what_is_set(root, program.kinds)?, text)?;
+    let mut root = files::expanded(with_what_is_set(root, program.kinds)?, text)?;
+    name_as_yaml_reads_it(&mut root)?;
     let Content::Mapping(pairs) = &root.content else {
         let message = format!("a study is a mapping that starts with `study: NAME`, not {}", root.describe());
         return Err(Diagnostic::new(message).at(root.place));
@@ -227,7 +229,7 @@ fn drafts(
             return Err(Diagnostic::new(message).at(stages.node.place).help(written));
         }
     };
-    let stages = Stages { pairs, kinds: program.kinds, foreign: program.foreign };
+    let stages = Stages { pairs, kinds: program.kinds, foreign: program.foreign, derived: program.derived };
     let (mut drafts, mut above) = (Vec::with_capacity(pairs.len()), None);
     for (index, pair) in pairs.iter().enumerate() {
         let draft = draft(pair, stages, belong, above, |found| blame.put(index, found));
@@ -308,6 +310,21 @@ fn kind_named(node: &Tree, kinds: &[&'static Kind]) -> Result<&'static Kind, Dia
         let help = suggest(text, kinds.iter().map(|kind| kind.name));
         Diagnostic::new(format!("unknown kind of stage: {}", node.describe())).at(node.place).help(help)
     })
+}
+
+/// Replaces the name of the study by the one that it is to readers of YAML, as the schema has it.
+fn name_as_yaml_reads_it(root: &mut Tree) -> Result<(), Diagnostic> {
+    let Content::Mapping(pairs) = &mut root.content else { return Ok(()) };
+    let Some(pair) = pairs.iter_mut().find(|pair| pair.key == "study" && !pair.node.is_null()) else { return Ok(()) };
+    let Content::Scalar { text, quoted: false } = &mut pair.node.content else { return Ok(()) };
+    let Some(name) = plain_name(text) else {
+        let message = format!("{} is a number to readers of YAML, and no name of a study", quote(text));
+        let help =
+            "a number that is a name is whole, not negative and has 64 digits at most; in quotes any name is text";
+        return Err(Diagnostic::new(message).at(pair.node.place).help(help));
+    };
+    *text = name;
+    Ok(())
 }
 
 /// Lower-case letters, digits, `-` and `_`, beginning with a letter or digit: names become files and words of commands.

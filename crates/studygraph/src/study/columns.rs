@@ -5,7 +5,7 @@
 //! value keeps its place in the file. Lines that do not count are left out by `conditions.rs`. Must not know: fields, what any is for.
 
 use super::characters::check_merged;
-use super::conditions::{Condition, TOOTH, average, chosen, is_mark, is_same, marks};
+use super::conditions::{Condition, average, chosen, is_mark, is_same, is_tooth, marks, missing, of_lines};
 use super::document::{Content, KeyValue, Node, parse};
 use super::words::{self, quote};
 use declare::error::{Diagnostic, Place, nearest};
@@ -43,14 +43,18 @@ pub fn fields(text: &str, conditions: &[Condition]) -> Result<(Vec<KeyValue>, Pl
     let mut header: Option<(Vec<Column>, char, Place)> = None;
     let mut lines: Vec<Line> = Vec::new();
     let mut decimals = Decimals::default();
-    let mut missing: Option<Vec<&str>> = None;
+    let mut lists_of_marks: Vec<(&str, Place)> = Vec::new();
+    let mut all_marks: Option<Vec<&str>> = None;
     let mut offset = 0;
     for (number, line) in (1..).zip(text.split('\n')) {
         let here = Place { line: number, column: 1, offset, length: line.len() };
         offset += line.len() + 1;
         if let Some(said) = line.trim_start().strip_prefix('#') {
-            match marks(said) {
-                Some(marks) => missing = Some(marks),
+            match missing(said) {
+                Some(list) => {
+                    lists_of_marks.push((list, part(line, here, list)));
+                    all_marks = None;
+                }
                 None => pairs.extend(said_by(said, line, here)?),
             }
         } else if line.trim().is_empty() {
@@ -64,7 +68,13 @@ pub fn fields(text: &str, conditions: &[Condition]) -> Result<(Vec<KeyValue>, Pl
                 return Err(other_count(cells.len(), columns.len(), *separator).at(here));
             }
             let of_values = |at: &usize| !columns[*at].is_key;
-            let is_missing = |cell: &Cell| missing.iter().flatten().any(|mark| is_same(mark, cell.text));
+            if all_marks.is_none() {
+                let of_lists = lists_of_marks
+                    .iter()
+                    .map(|(list, place)| marks(list, *separator).map_err(|found| found.at(*place)));
+                all_marks = Some(of_lists.collect::<Result<Vec<_>, _>>()?.concat());
+            }
+            let is_missing = |cell: &Cell| all_marks.iter().flatten().any(|mark| is_same(mark, cell.text));
             if (0..cells.len()).filter(of_values).any(|at| is_missing(&cells[at])) {
                 continue;
             }
@@ -259,7 +269,7 @@ fn unquoted(text: &str) -> &str {
 fn column<'a>(cell: Cell<'a>, conditions: &[Condition]) -> Result<Column<'a>, Diagnostic> {
     // A number of a tooth has no unit, and neither has what a condition names.
     let key = cell.text.split('[').next().unwrap_or_default().trim_end();
-    if key == TOOTH || conditions.iter().any(|condition| condition.column == key) {
+    if is_tooth(key) || conditions.iter().any(|condition| condition.column.eq_ignore_ascii_case(key)) {
         let name = Cell { text: key, place: Place { length: key.len(), ..cell.place } };
         return Ok(Column { name, unit: None, is_key: true });
     }
@@ -270,6 +280,9 @@ fn column<'a>(cell: Cell<'a>, conditions: &[Condition]) -> Result<Column<'a>, Di
     if cell.text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) {
         let message = format!("{} stands where the name of a column is expected", quote(cell.text));
         return Err(wrong(message).help(HEADER));
+    }
+    if let Some(help) = of_lines(key).filter(|_| key == cell.text || cell.text.ends_with("[-]")) {
+        return Err(wrong(format!("the column {} is no field", quote(key))).help(help));
     }
     let written = cell.text.split_once('[').and_then(|(name, unit)| Some((name.trim_end(), unit.strip_suffix(']')?)));
     let Some((name, unit)) = written else {

@@ -10,6 +10,10 @@ use declare::error::{Diagnostic, Place};
 
 /// The column of files of several teeth.
 pub const TOOTH: &str = "tooth";
+/// First letters of columns with the number of a tooth, in small letters.
+const TEETH: [&str; 5] = ["tooth", "zahn", "teeth", "zähne", "dent"];
+/// First letters of columns with the side of a tooth.
+const FLANKS: [&str; 5] = ["flank", "side", "seite", "left/right", "l/r"];
 /// The value of a condition that stands for the average of all.
 const MEAN: &str = "mean";
 /// Name of the line that says which marks stand for missing values.
@@ -63,7 +67,7 @@ pub(super) fn chosen<'a>(
     let mut averaged = None;
     for condition in conditions {
         let name = &condition.column;
-        let Some(at) = columns.iter().position(|column| column.name.text == name) else {
+        let Some(at) = columns.iter().position(|column| column.name.text.eq_ignore_ascii_case(name)) else {
             let message =
                 format!("there is no column {}, and the study names {}", quote(name), quote(&condition.value));
             return Err(Diagnostic::new(message)
@@ -98,9 +102,9 @@ pub(super) fn chosen<'a>(
         let mut taken: Vec<Option<Line>> = lines.into_iter().map(Some).collect();
         return Ok((order.iter().filter_map(|line| taken[*line].take()).collect(), groups.len()));
     }
-    for (at, column) in columns.iter().enumerate().filter(|(_, column)| column.name.text == TOOTH && column.is_key) {
+    for (at, column) in columns.iter().enumerate().filter(|(_, column)| is_tooth(column.name.text) && column.is_key) {
         let values = values(&lines, at);
-        if values.len() > 1 && !conditions.iter().any(|condition| condition.column == TOOTH) {
+        if values.len() > 1 && !conditions.iter().any(|condition| is_tooth(&condition.column)) {
             let message = format!("this file has several teeth: {}", listed(&values));
             let help = format!(
                 "name one behind the file, `\"NAME.csv[tooth={}]\"`, or their average, `\"NAME.csv[tooth=mean]\"`",
@@ -173,26 +177,81 @@ fn number(node: &Node) -> Option<f64> {
     text.split(' ').next()?.parse().ok()
 }
 
-/// Whether two cells say the same: as texts, whatever their letters, or as numbers.
+/// Whether two cells say the same: as texts, whatever their letters, or as numbers, with a decimal point or a decimal comma.
 pub(super) fn is_same(one: &str, other: &str) -> bool {
-    let both = one.parse::<f64>().ok().zip(other.parse::<f64>().ok());
-    one.eq_ignore_ascii_case(other) || both.is_some_and(|(one, other)| one.total_cmp(&other).is_eq())
+    let number = |text: &str| text.replacen(',', ".", 1).parse::<f64>().ok();
+    let both = number(one).zip(number(other));
+    one.eq_ignore_ascii_case(other) || both.is_some_and(|(one, other)| one - other == 0.0)
+}
+
+/// Whether a column says which tooth a line is of.
+pub(super) fn is_tooth(name: &str) -> bool {
+    name.eq_ignore_ascii_case(TOOTH)
+}
+
+/// The remedy for a column that says which lines are meant by another name than a study does.
+pub(super) fn of_lines(name: &str) -> Option<String> {
+    let name_in_small = name.to_lowercase();
+    let begins = |words: &[&str]| words.iter().any(|word| name_in_small.starts_with(word));
+    let condition = |column: &str, value: &str| format!("`\"NAME.csv[{column}={value}]\"`");
+    if begins(&TEETH) {
+        return Some(format!(
+            "call the column `{TOOTH}`, or name the lines that count behind the file, {}",
+            condition(name, "1")
+        ));
+    }
+    begins(&FLANKS).then(|| format!("name the lines that count behind the file, {}", condition(name, "left")))
 }
 
 /// Whether a cell is a mark that programs write for what was not measured.
 pub(super) fn is_mark(text: &str) -> bool {
     let has_none = !text.chars().any(char::is_alphanumeric);
     let whole = text.trim_start_matches(['-', '+']);
-    let whole =
-        whole.split_once(['.', ',']).filter(|(_, rest)| rest.bytes().all(|byte| byte == b'0')).map_or(whole, |it| it.0);
-    let is_nines = whole.len() >= NINES && whole.bytes().all(|byte| byte == b'9');
+    let whole = whole
+        .split_once(['.', ','])
+        .filter(|(_, rest)| is_all(rest, b'0') || is_all(rest, b'9'))
+        .map_or(whole, |it| it.0);
+    let is_nines = whole.len() >= NINES && is_all(whole, b'9');
     has_none || is_nines || MARKS.iter().any(|mark| text.eq_ignore_ascii_case(mark))
 }
 
-/// The marks that a line `# missing: …` says, parted by commas.
-pub(super) fn marks(said: &str) -> Option<Vec<&str>> {
-    let (_, list) = said.split_once(':').filter(|(name, _)| name.trim() == MISSING)?;
+fn is_all(digits: &str, digit: u8) -> bool {
+    digits.bytes().all(|byte| byte == digit)
+}
+
+/// The list of marks that a comment line states.
+pub(super) fn missing(said: &str) -> Option<&str> {
+    let (_, list) = said.split_once(':').filter(|(name, _)| name.trim().eq_ignore_ascii_case(MISSING))?;
     let list = list.trim();
-    let list = list.strip_prefix('[').and_then(|list| list.strip_suffix(']')).unwrap_or(list);
-    Some(list.split(',').map(|mark| mark.trim().trim_matches(['"', '\''])).collect())
+    Some(list.strip_prefix('[').and_then(|list| list.strip_suffix(']')).unwrap_or(list))
+}
+
+/// The marks of a list of a file whose columns are parted by `separator`. Commas part them; one between two digits is a decimal comma.
+///
+/// # Errors
+/// If a comma stands between two digits, and the columns are parted by commas.
+pub(super) fn marks(list: &str, separator: char) -> Result<Vec<&str>, Diagnostic> {
+    let mut marks = Vec::new();
+    let (mut start, mut quote_sign) = (0, None);
+    for (at, letter) in list.char_indices() {
+        match (letter, quote_sign) {
+            ('"' | '\'', None) => quote_sign = Some(letter),
+            (_, Some(sign)) if sign == letter => quote_sign = None,
+            (',', None) => {
+                let is_digit = |letter: Option<char>| letter.is_some_and(|letter| letter.is_ascii_digit());
+                let is_decimal = is_digit(list[..at].chars().next_back()) && is_digit(list[at + 1..].chars().next());
+                if !is_decimal {
+                    marks.push(&list[start..at]);
+                    start = at + 1;
+                } else if separator == ',' {
+                    let message = format!("{} can be read as one mark and as two", quote(&list[start..]));
+                    return Err(Diagnostic::new(message)
+                        .help("write a space behind a comma between two marks, and a decimal point in a number"));
+                }
+            }
+            _ => {}
+        }
+    }
+    marks.push(&list[start..]);
+    Ok(marks.into_iter().map(|mark| mark.trim().trim_matches(['"', '\''])).collect())
 }

@@ -3,6 +3,7 @@
 //! Every wrong input ends in one diagnostic: where, what was found, what was expected, and the nearest known name.
 //! Names of stages are gathered and checked later, when all stages are known. Must not know: what any field means.
 
+use super::around::{self, is_number, length};
 use super::document::{Content, KeyValue, Node, nothing, parse};
 use super::overrides::{self, Stages};
 use super::quantity::interval::Interval;
@@ -14,7 +15,7 @@ use super::{files, unknown};
 use declare::error::{Diagnostic, Place, suggest};
 use declare::parameter::{Field, Member, Presence, Shape, Span};
 use declare::record::{PlacedValue, Record, Value, Variant};
-use declare::units::{LENGTH, parse_quantity};
+use declare::units::parse_quantity;
 
 /// The name of a stage that a field refers to.
 #[derive(Clone, Debug)]
@@ -104,7 +105,17 @@ impl<'a> Decoder<'a> {
             let field = |name: &str| fields.iter().find(|field| field.name == name);
             let distance =
                 |name: &str, text: &str| field(name).map(Measure::of).map_or(0.0, |measure| measure.distance(text));
-            wrong = unknown::fields(pairs, &known, label, self.stages, &distance);
+            let length_of = |name: &str| pairs.iter().filter_map(|pair| length(fields, pair)).find(|own| own.0 == name);
+            let refused = |name: &str, node: &Node| {
+                let field = field(name).filter(|field| is_number(&field.shape))?;
+                let of = |unit: &str| length_of(unit).map(|own| own.1).or_else(|| self.length_around(unit));
+                let read = Measure::of(field).counting(field, of).value(node, field.span, Ok(()));
+                read.err().map(|wrong| self.with_rule(wrong, field, node, pairs))
+            };
+            let (known, stages) = (known.as_slice(), self.stages);
+            let mapping =
+                unknown::Mapping { pairs, known, fields, label, stages, distance: &distance, refused: &refused };
+            wrong = mapping.unknown();
         }
         // What is missing may stand under another name, or in a file that is not there.
         let has_file = pairs.iter().any(|pair| is_file(fields, &pair.key));
@@ -168,7 +179,10 @@ impl<'a> Decoder<'a> {
         let around = self.chooses;
         self.chooses |= field.chooses;
         let entry = match (pairs.iter().find(|pair| pair.key == field.name), field.presence) {
-            (Some(pair), _) => self.value(&pair.node, &field.shape, field, field.name, pair.place).map(Some),
+            (Some(pair), _) => {
+                let value = self.value(&pair.node, &field.shape, field, field.name, pair.place);
+                value.map(Some).map_err(|wrong| self.with_rule(wrong, field, &pair.node, pairs))
+            }
             (None, Presence::Optional) => Ok(None),
             (None, Presence::Required) => {
                 let expected = words::expected(&field.shape, words::example_of(field));
@@ -201,8 +215,7 @@ impl<'a> Decoder<'a> {
         }
         let value = match shape {
             Shape::Quantity { .. } | Shape::Number { .. } => {
-                let of = |unit: &str| self.lengths.iter().rev().find(|(name, _)| *name == unit).map(|(_, si)| *si);
-                let measure = Measure::new(name, shape, example).counting(field, of);
+                let measure = Measure::new(name, shape, example).counting(field, |unit| self.length_around(unit));
                 if let Some(interval) = if is_single(field) { measure.interval(node)? } else { None } {
                     let value = measure.number(interval.middle);
                     let place = if self.marks_intervals { varied::mark(self.intervals.len()) } else { node.place };
@@ -228,7 +241,7 @@ impl<'a> Decoder<'a> {
                 let text = scalar(name, node, shape)?;
                 let found = choices.iter().find(|choice| choice.name == text);
                 let found = found.ok_or_else(|| {
-                    let help = suggest(text, choices.iter().map(|choice| choice.name));
+                    let help = self.suggested(text, name, choices.iter().map(|choice| choice.name));
                     Diagnostic::new(format!("{} cannot be {}", quote(name), quote(text))).at(node.place).help(help)
                 })?;
                 Value::Choice(found.name)
@@ -302,13 +315,35 @@ impl<'a> Decoder<'a> {
             }
         };
         let member = members.iter().find(|member| member.name == name).ok_or_else(|| {
-            let message = format!("unknown name {} in {}", quote(name), quote(field));
-            Diagnostic::new(message).at(place).help(suggest(name, names().collect::<Vec<_>>()))
+            let message = if matches!(node.content, Content::Scalar { .. }) && parse_quantity(name).is_ok() {
+                format!("{} is {}; it takes fields, not a number", quote(field), quote(name))
+            } else {
+                format!("unknown name {} in {}", quote(name), quote(field))
+            };
+            Diagnostic::new(message).at(place).help(self.suggested(name, field, names()))
         })?;
         if !inside.is_null() && !matches!(inside.content, Content::Mapping(_)) {
             return Err(not_fields(inside, member.fields, &[], &quote(member.name)));
         }
         Ok((member.name, self.record(inside, member.fields, &[], &quote(member.name), place)?))
+    }
+
+    /// The name among `known` that a word in `field` stands for, or is near to.
+    fn suggested<'n>(&self, word: &str, field: &str, known: impl Iterator<Item = &'n str> + Clone) -> String {
+        let called = unknown::called_among(word, field, &known, self.stages.foreign);
+        called.unwrap_or_else(|| suggest(word, known))
+    }
+
+    /// A message about a value, with the rule by which its field follows from what stands there.
+    fn with_rule(&self, wrong: Diagnostic, field: &Field, node: &Node, pairs: &[KeyValue]) -> Diagnostic {
+        let Some(rule) = around::rule(field, node, pairs, self.stages) else { return wrong };
+        let help = wrong.help.as_ref().map_or_else(|| rule.clone(), |help| format!("{help}; {rule}"));
+        wrong.help(help)
+    }
+
+    /// The length of this name in the mappings around, in SI.
+    fn length_around(&self, unit: &str) -> Option<f64> {
+        self.lengths.iter().rev().find(|(name, _)| *name == unit).map(|(_, si)| *si)
     }
 
     /// The fields of the stage that the field `of` names, with those in `pairs` in the place of its own.
@@ -338,14 +373,6 @@ impl<'a> Decoder<'a> {
 fn negative(field: &Field, node: &Node, wrong: Diagnostic) -> Diagnostic {
     let is_negative = plain(node).is_some_and(|text| text.starts_with('-')) && wrong.help.is_none();
     if is_negative && !field.negative.is_empty() { wrong.help(field.negative) } else { wrong }
-}
-
-/// A length that stands in a mapping by itself.
-fn length(fields: &'static [Field], pair: &KeyValue) -> Option<(&'static str, f64)> {
-    let is_length = |field: &&Field| matches!(field.shape, Shape::Quantity { dimension: LENGTH, .. });
-    let field = fields.iter().find(|field| field.name == pair.key).filter(is_length)?;
-    let read = parse_quantity(plain(&pair.node)?).ok().filter(|read| read.dimension == LENGTH)?;
-    Some((field.name, read.value))
 }
 
 /// Whether each number that a field has stands by itself, in no list and on no axis.

@@ -15,6 +15,39 @@ pub const FOLDER: &str = "studies";
 /// The key at the top of a study that has its name.
 const KEY: &str = "study";
 
+/// Largest number that a schema takes for a name: one of more digits is too long.
+pub const MOST: f64 = 1e64;
+
+/// The name that a plain scalar is to readers of YAML 1.2: a number or a truth value that cannot be a name as it is written, such as
+/// `+5`, `0x1F` or `True`, is the same value in decimal digits or small letters. None for a number that is no name in any form.
+#[must_use]
+pub fn plain_name(text: &str) -> Option<String> {
+    if matches!(text, "True" | "TRUE" | "False" | "FALSE") {
+        return Some(text.to_ascii_lowercase());
+    }
+    let is_name = text.len() <= 64
+        && text.starts_with(|c: char| c.is_ascii_alphanumeric())
+        && text.bytes().all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || b"-_".contains(&byte));
+    let own = || Some(text.to_owned());
+    if let Some(digits) = text.strip_prefix("0x").filter(|_| !is_name) {
+        return u128::from_str_radix(digits, 16).ok().map(|value| value.to_string()).or_else(own);
+    }
+    let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
+    if !unsigned.is_empty() && unsigned.bytes().all(|byte| byte.is_ascii_digit()) {
+        let digits = unsigned.trim_start_matches('0');
+        return match (is_name, digits) {
+            (false, "") => Some("0".to_owned()),
+            (false, digits) if !text.starts_with('-') => Some(digits.to_owned()),
+            _ => own(),
+        };
+    }
+    let is_number = unsigned.starts_with(|c: char| c.is_ascii_digit() || c == '.')
+        && unsigned.bytes().all(|byte| byte.is_ascii_digit() || b".eE+-".contains(&byte));
+    let Some(value) = text.parse::<f64>().ok().filter(|_| is_number) else { return own() };
+    let value = (value.fract() == 0.0 && (0.0..MOST).contains(&value)).then_some(value)?;
+    if is_name { own() } else { Some(format!("{:.0}", value.abs())) }
+}
+
 /// The value of `study:` in a text; none where it has none, or is no YAML.
 #[must_use]
 pub fn stated_name(text: &str) -> Option<String> {
@@ -23,11 +56,12 @@ pub fn stated_name(text: &str) -> Option<String> {
         let value = value.split(" #").next().unwrap_or_default().trim();
         // Anything else, quotes for one, is for YAML to read.
         if !value.is_empty() && value.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"-_".contains(&byte)) {
-            return Some(value.to_owned());
+            return plain_name(value).or_else(|| Some(value.to_owned()));
         }
     }
     let Node { content: Content::Mapping(pairs), .. } = parse(text).ok()?? else { return None };
     pairs.into_iter().find(|pair| pair.key == KEY).and_then(|pair| match pair.node.content {
+        Content::Scalar { text, quoted: false } => plain_name(&text).or(Some(text)),
         Content::Scalar { text, .. } => Some(text),
         _ => None,
     })

@@ -3,6 +3,7 @@
 //! `read` gives text, `document` a tree, `decode` records by the declared fields, `assemble` the study and its stages,
 //! `links` checks what they say of each other. Must not know: execution, the store.
 
+mod around;
 mod assemble;
 mod blame;
 pub mod blocks;
@@ -38,6 +39,7 @@ mod structure;
 mod tests;
 mod unknown;
 mod varied;
+mod whereabouts;
 mod whole;
 mod words;
 

@@ -21,7 +21,7 @@ const DEEPEST: usize = 8;
 /// The stages that can be built, of all that are written.
 pub(super) fn that_stand(pairs: &[KeyValue], program: &Program) -> Vec<Node> {
     let belong = ranges_belong(program.kinds);
-    let stages = Stages { pairs, kinds: program.kinds, foreign: program.foreign };
+    let stages = Stages { pairs, kinds: program.kinds, foreign: program.foreign, derived: program.derived };
     let built = |pair: &KeyValue| {
         let mut is_wrong = false;
         let Draft { name, place, kind, record, references, .. } =

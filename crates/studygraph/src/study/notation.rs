@@ -138,6 +138,36 @@ pub fn halves_of(text: &str) -> Option<[String; 2]> {
     is_there.then(|| [middle, half.split_whitespace().collect::<Vec<_>>().join(" ")])
 }
 
+/// A quantity whose number has a fraction, `1 1/2 in`, or minutes and seconds of an angle, `20°30'`, with one decimal number.
+#[must_use]
+pub fn in_decimals(text: &str) -> Option<String> {
+    sexagesimal(text.trim()).or_else(|| fraction(text.trim()))
+}
+
+fn sexagesimal(text: &str) -> Option<String> {
+    let (degrees, rest) = text.split_once('°')?;
+    let (minutes, rest) = rest.split_once(['\'', '′'])?;
+    let seconds = rest.trim().trim_end_matches(['"', '″', '\'', '′']).trim();
+    let part = |text: &str| text.trim().parse::<f64>().ok().filter(|part| (0.0..60.0).contains(part));
+    let seconds = if seconds.is_empty() { 0.0 } else { part(seconds)? };
+    let (whole, part) = (degrees.trim().parse::<f64>().ok()?, part(minutes)? / 60.0 + seconds / 3600.0);
+    Some(format!(
+        "{} deg",
+        super::words::number(if degrees.trim().starts_with('-') { whole - part } else { whole + part })
+    ))
+}
+
+fn fraction(text: &str) -> Option<String> {
+    let (before, behind) = text.split_once('/')?;
+    let (whole, numerator) = before.trim().rsplit_once(' ').unwrap_or(("0", before.trim()));
+    let end = behind.find(|c: char| !c.is_ascii_digit()).unwrap_or(behind.len());
+    let (denominator, unit) = behind.split_at(end);
+    let digits = |text: &str| text.parse::<u32>().ok().map(f64::from);
+    let (whole, numerator, denominator) = (digits(whole.trim())?, digits(numerator)?, digits(denominator)?);
+    let value = (denominator > 0.0).then(|| whole + numerator / denominator)?;
+    Some(format!("{} {}", super::words::number(value), unit.trim()).trim_end().to_owned())
+}
+
 /// Whether a zero stands before another digit: eight times as much to some readers of YAML as to others.
 #[must_use]
 pub fn starts_with_zero(text: &str) -> bool {

@@ -6,17 +6,18 @@
 use super::document::{Content, KeyValue, Node};
 use super::files;
 use super::words::quote;
-use crate::program::Foreign;
+use crate::program::{Derived, Foreign};
 use crate::stage::Kind;
 use declare::error::{Diagnostic, Place, suggest};
 use declare::parameter::{Field, Shape};
 
-/// The stages of a study as written, the kinds there are, and what others call their fields.
+/// The stages of a study as written, the kinds there are, the words of others for their fields, and rules that lead to them.
 #[derive(Clone, Copy, Default)]
 pub struct Stages<'a> {
     pub pairs: &'a [KeyValue],
     pub kinds: &'a [&'static Kind],
-    pub foreign: &'a [Foreign],
+    pub foreign: &'a [&'static [Foreign]],
+    pub derived: &'a [Derived],
 }
 
 impl<'a> Stages<'a> {

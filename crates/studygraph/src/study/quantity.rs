@@ -9,14 +9,15 @@ mod unreadable;
 use super::decode::scalar;
 use super::document::{Content, Node};
 use super::notation;
-use super::overrides::Stages;
 use super::unknown;
 use super::words::{self, quote};
 use declare::error::Diagnostic;
 use declare::parameter::{Field, Shape, Span};
 use declare::record::{PlacedValue, Value};
-use declare::units::{Dimension, RATIO, UnitError, parse_quantity, split_quantity};
+use declare::units::{self, Dimension, RATIO, UnitError, parse_quantity, split_quantity};
 
+/// Largest power of a unit that a message names.
+const MOST_POWER: i8 = 9;
 /// Points of an axis.
 const MOST_POINTS: usize = 100_000;
 
@@ -106,9 +107,11 @@ impl<'a> Measure<'a> {
         if interval::halves(text).is_some() {
             return Err(self.no_interval(text));
         }
-        if let Some(help) = notation::help(text) {
+        if let Some(help) = notation::help(text).or_else(|| interval::elsewhere(text)) {
             let message = format!("{shown} is not a number as a study has it; {} is expected", self.expected());
-            let help = notation::with_reading(help, text, &|text| self.distance(text));
+            let in_modules = self.in_modules(text);
+            let help = || notation::with_reading(help, text, &|text| self.distance(text));
+            let help = in_modules.unwrap_or_else(help);
             return Err(Diagnostic::new(message).help(help));
         }
         let read = parse_quantity(text).map_err(|error| self.unreadable(text, error))?;
@@ -125,8 +128,12 @@ impl<'a> Measure<'a> {
                 return Err(Diagnostic::new(message));
             }
             Some(dimension) if dimension != read.dimension => {
-                let (name, units) = read.dimension.describe();
-                let is = if units.is_empty() { "has a unit of another kind".to_owned() } else { format!("is {name}") };
+                let Dimension { length, mass, time, .. } = read.dimension;
+                let is = if [length, mass, time].iter().all(|power| power.abs() <= MOST_POWER) {
+                    format!("is {}", units::described(read.dimension))
+                } else {
+                    "has a unit of another kind".to_owned()
+                };
                 return Err(Diagnostic::new(format!("{shown} {is}; {} is expected", self.expected())));
             }
             _ => {}
@@ -149,6 +156,17 @@ impl<'a> Measure<'a> {
             }
             (Some(_), _) => 0.0,
         }
+    }
+
+    /// Of a length in another notation that stands where a number counts in a length: the help for it in the notation of studies.
+    fn in_modules(&self, text: &str) -> Option<String> {
+        self.counts_in?;
+        if let Some([middle, half]) = notation::halves_of(text) {
+            return self.counted(&middle, &half, text)?.help;
+        }
+        let point = text.trim().replacen(',', ".", 1);
+        let meant = notation::without_commas(text.trim(), &|text| self.distance(text))?;
+        if meant == format!("write `{point}`") { self.read(&point, false).err()?.help } else { None }
     }
 
     fn outside(&self, text: &str) -> Diagnostic {
@@ -196,10 +214,10 @@ impl<'a> Measure<'a> {
             return self.single(node).map(|value| Value::Axis(vec![value]));
         };
         let names = ["from", "to", "count"];
-        if let Some(wrong) =
-            unknown::fields(pairs, &names, &quote(self.name), Stages::default(), &|_, text| self.distance(text))
-                .into_iter()
-                .next()
+        if let Some(wrong) = unknown::Mapping::plain(pairs, &names, &quote(self.name), &|_, text| self.distance(text))
+            .unknown()
+            .into_iter()
+            .next()
         {
             return Err(wrong);
         }
@@ -251,7 +269,7 @@ impl<'a> Measure<'a> {
         }
         let names = ["unit", "values"];
         let distance = |_: &str, text: &str| self.distance(text);
-        let wrong = unknown::fields(pairs, &names, &quote(self.name), Stages::default(), &distance);
+        let wrong = unknown::Mapping::plain(pairs, &names, &quote(self.name), &distance).unknown();
         if let Some(wrong) = wrong.into_iter().next() {
             return Err(wrong);
         }

@@ -145,7 +145,7 @@ fn axis(stages: Stages, links: &[Link], pair: &KeyValue, of: &str) -> Result<(Ax
         return Err(Diagnostic::new(message).at(pair.node.place));
     };
     if let Some(wrong) =
-        unknown::fields(fields, &FIELDS, &quote(name), Stages::default(), &|_, _| 0.0).into_iter().next()
+        unknown::Mapping::plain(fields, &FIELDS, &quote(name), &|_, _| 0.0).unknown().into_iter().next()
     {
         return Err(wrong);
     }

@@ -43,9 +43,7 @@ pub fn integer(
         let whole = whole.filter(|value| value.fract() == 0.0 && value.abs() < 1e15);
         return Err(match whole {
             Some(value) => wrong.help(format!("write `{value}`")),
-            None if has_unit => {
-                wrong.help(format!("what is measured in {} is another quantity, no count", quote(unit)))
-            }
+            None if has_unit => wrong.help(format!("a quantity in {} is another quantity, no count", quote(unit))),
             None => wrong,
         });
     }

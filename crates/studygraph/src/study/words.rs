@@ -5,7 +5,7 @@
 use declare::error::Diagnostic;
 use declare::parameter::{Field, Presence, Shape};
 use declare::text::{code_point, is_invisible};
-use declare::units::{Dimension, RATIO, in_unit, parse_unit, split_quantity};
+use declare::units::{Dimension, RATIO, in_unit, parse_quantity, parse_unit, split_quantity};
 
 /// Characters of a user's text that a message repeats.
 const LONGEST_QUOTE: usize = 60;
@@ -121,7 +121,11 @@ pub fn example(dimension: Dimension, minimum: f64, maximum: f64) -> Option<Strin
     })
 }
 
-/// The user's own number with the unit of `such`, else the first that makes it acceptable, or any acceptable quantity.
+/// Ratio of a number to the usual one from which on another unit was meant.
+const FAR: f64 = 500.0;
+
+/// The user's own number with the unit that brings it nearest to `such`; `such` itself, or any acceptable quantity, if it is far from
+/// that in every unit.
 pub fn example_like(
     amount: &str,
     dimension: Dimension,
@@ -130,9 +134,23 @@ pub fn example_like(
     such: Option<&str>,
 ) -> Option<String> {
     let usual = such.map(|such| split_quantity(such).1).filter(|unit| !unit.is_empty());
-    let mut units = usual.into_iter().chain(dimension.describe().1.iter().copied());
-    let own = units.find_map(|unit| with_unit(amount, unit, dimension, minimum, maximum));
-    own.or_else(|| such.map(str::to_owned)).or_else(|| example(dimension, minimum, maximum))
+    let units = usual.into_iter().chain(dimension.describe().1.iter().copied());
+    let si = |text: &str| parse_quantity(text).ok().map(|read| read.value).filter(|si| *si != 0.0);
+    let distance = |text: &str| {
+        let ratio = such.and_then(si).zip(si(text)).map(|(usual, own)| (own / usual).abs());
+        ratio.map_or(0.0, |ratio| ratio.ln().abs())
+    };
+    let mut own: Vec<(f64, String)> = units
+        .filter_map(|unit| with_unit(amount, unit, dimension, minimum, maximum))
+        .map(|text| (distance(&text), text))
+        .filter(|(distance, _)| *distance < FAR.ln())
+        .collect();
+    own.sort_by(|one, other| one.0.total_cmp(&other.0));
+    own.into_iter()
+        .next()
+        .map(|(_, text)| text)
+        .or_else(|| such.map(str::to_owned))
+        .or_else(|| example(dimension, minimum, maximum))
 }
 
 fn with_unit(amount: &str, unit: &str, dimension: Dimension, minimum: f64, maximum: f64) -> Option<String> {

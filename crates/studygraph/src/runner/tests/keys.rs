@@ -84,6 +84,7 @@ static DRAWN: Program = Program {
     pictures: Pictures { reader: "report", tables: &[("plain", &["sketch", "detail"])] },
     kinds: &[],
     foreign: &[],
+    derived: &[],
     named: &[],
     code_of: |_| String::from("code"),
     counters: &[],

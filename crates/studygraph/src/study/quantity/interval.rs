@@ -10,7 +10,7 @@ use super::Measure;
 use declare::error::{Diagnostic, Place};
 use declare::record::Record;
 use declare::record::varied::{Axis, Form, Slot, Spread, Values, Within};
-use declare::units::{Dimension, RATIO, parse_quantity, split_quantity};
+use declare::units::{Dimension, LENGTH, RATIO, foreign_quantity, parse_quantity, split_quantity};
 
 /// As which a half-width may be marked.
 const SIGNS: [&str; 4] = ["±", "+/-", "+-", r"\pm"];
@@ -78,7 +78,7 @@ pub fn halves(text: &str) -> Option<(&str, &str)> {
 }
 
 /// What an interval in another notation is here; none where a text is no such interval.
-fn elsewhere(text: &str) -> Option<String> {
+pub(super) fn elsewhere(text: &str) -> Option<String> {
     let written =
         |before: &str, behind: &str| format!("an interval is written `{} ± {}`", before.trim(), behind.trim());
     let text = text.trim();
@@ -91,7 +91,12 @@ fn elsewhere(text: &str) -> Option<String> {
         return Some(written(before, &format!("{behind} {}", unit.trim())));
     }
     let (number, rest) = split_quantity(text);
-    let is_sided = !number.is_empty() && halves(text).is_none() && rest.starts_with(['+', '-', '−']);
+    let is_limit = |word: &str| {
+        word.strip_prefix(['+', '-', '−'])
+            .is_some_and(|size| size.starts_with(|c: char| c.is_ascii_digit() || c == '.'))
+    };
+    let starts_so = rest.starts_with(['+', '-', '−']) || rest.split_whitespace().skip(1).any(is_limit);
+    let is_sided = !number.is_empty() && halves(text).is_none() && starts_so;
     is_sided.then(|| {
         "an interval is as wide to both sides: `0.504 ± 0.0005` is its middle and half of its width".to_owned()
     })
@@ -113,6 +118,13 @@ pub fn without_interval(mut node: Node) -> Node {
         *text = middle;
     }
     node
+}
+
+/// A length in SI, in any unit that is known anywhere.
+fn length_of(text: &str) -> Option<f64> {
+    let foreign = || foreign_quantity(text).filter(|read| read.1 == LENGTH).map(|read| read.0);
+    let own = parse_quantity(text).ok().filter(|read| read.dimension == LENGTH).map(|read| read.value);
+    own.or_else(foreign)
 }
 
 impl Measure<'_> {
@@ -142,9 +154,9 @@ impl Measure<'_> {
         if let Some(help) = [before, behind].into_iter().find_map(notation::help) {
             return Err(other_notation().help(notation::with_reading(help, text, &|text| self.distance(text))));
         }
-        if let Some(found) =
-            self.in_percent(before, behind, &shown).or_else(|| self.of_one_unit(before, behind, &shown))
-        {
+        let mut found = self.counted(before, behind, &shown);
+        found = found.or_else(|| self.in_percent(before, behind, &shown));
+        if let Some(found) = found.or_else(|| self.of_one_unit(before, behind, &shown)) {
             return Err(found.at(node.place));
         }
         // It is text to any reader of YAML, in quotes or not.
@@ -171,6 +183,51 @@ impl Measure<'_> {
         let (unit, range) = (unit.to_owned(), (self.minimum, self.maximum));
         let text = text.clone();
         Ok(Some(Interval { middle, half, unit, dimension: self.dimension, range, place: node.place, text }))
+    }
+
+    /// Two lengths of a number that counts in a length: both of them divided by it.
+    pub(super) fn counted(&self, before: &str, behind: &str, shown: &str) -> Option<Diagnostic> {
+        let (field, unit) = self.counts_in?;
+        let [middle, half] = [before, behind].map(|text| (split_quantity(text), length_of(text)));
+        let has_unit = [middle.0.1, half.0.1].map(|unit| !unit.is_empty());
+        let is_length = [middle.1, half.1].map(|length| length.is_some());
+        let is_share = half.0.1 == "%" && is_length[0];
+        let fits = |at: usize| is_length[at] || !has_unit[at];
+        if !is_length.contains(&true) || !(fits(0) && (fits(1) || is_share)) {
+            return None;
+        }
+        let wrong = Diagnostic::new(format!("{shown} has a unit; {} is a plain number", quote(self.name)));
+        let [number, of_half] = [middle.0.0, half.0.0].map(|number| number.parse::<f64>().ok());
+        let (number, of_half) = (number?, of_half?);
+        if [middle.0.1, half.0.1].iter().all(|unit| matches!(*unit, "" | "m")) {
+            let modules = format!("{} ± {}", middle.0.0, half.0.0);
+            let help = format!("`m` is the metre; for {modules} times the {field} write `{modules}`");
+            return Some(wrong.help(format!("{} counts in `{field}`, and {help}", quote(self.name))));
+        }
+        let Some(unit) = unit.filter(|unit| *unit > 0.0) else {
+            let help = format!("{} counts in `{field}`: divide both lengths by that of `{field}`", quote(self.name));
+            return Some(wrong.help(help));
+        };
+        let written = |middle: f64, half: f64| format!("`{} ± {}`", words::number(middle), words::number(half));
+        // The unit behind both numbers is that of both.
+        let shared = |text: &str| length_of(&format!("{text} {}", if has_unit[0] { middle.0.1 } else { half.0.1 }));
+        let in_modules = middle.1.or_else(|| shared(before))? / unit;
+        let half_in_modules =
+            if is_share { in_modules.abs() * of_half / 100.0 } else { half.1.or_else(|| shared(behind))? / unit };
+        let other = match is_length {
+            [false, true] => Some(written(number, half_in_modules)),
+            [true, false] if !is_share => Some(written(in_modules, of_half)),
+            _ => None,
+        };
+        let one = words::quantity(unit, LENGTH);
+        let other = other
+            .map_or(String::new(), |other| format!(", or {other} if the number without a unit is one of {field}s"));
+        let help = format!(
+            "{} counts in `{field}`, {one}: write {}{other}",
+            quote(self.name),
+            written(in_modules, half_in_modules)
+        );
+        Some(wrong.help(help))
     }
 
     /// A half-width in percent, which may be a share of the number, or as many hundredths; what else in percent is no ratio.
@@ -249,7 +306,6 @@ impl Measure<'_> {
 mod tests {
     use super::*;
     use declare::parameter::Shape;
-    use declare::units::LENGTH;
 
     #[test]
     fn both_halves_have_a_unit_of_their_own_or_share_one() {

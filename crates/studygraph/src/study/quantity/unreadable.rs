@@ -4,12 +4,15 @@
 //! a number is read.
 
 use super::Measure;
+use crate::study::notation;
 use crate::study::words::{self, quote};
 use declare::error::{Diagnostic, suggest};
 use declare::units::{self, ForeignUnit, LENGTH, Quantity, RATIO, UnitError, parse_quantity, split_quantity};
 
-/// Letters from which on a unit is a word that may have a slip.
+/// Letters from which on a unit is a word.
 const SPELLED_OUT: usize = 4;
+/// Words for the module behind a factor of it, in small letters.
+const MODULES: [&str; 6] = ["module", "modules", "modul", "mod", "mn", "m_n"];
 
 impl Measure<'_> {
     /// What to write for a quantity where a plain number stands. Another quantity is not that number without its unit.
@@ -19,7 +22,7 @@ impl Measure<'_> {
         }
         let Some((field, unit)) = self.counts_in.filter(|_| read.dimension == LENGTH) else {
             let unit = split_quantity(text).1;
-            return format!("what is measured in {} is another quantity, not this number with a unit", quote(unit));
+            return format!("a quantity in {} is another quantity, not this number with a unit", quote(unit));
         };
         let name = quote(self.name);
         // `1.25 m` is often written for 1.25 modules.
@@ -38,17 +41,34 @@ impl Measure<'_> {
         }
     }
 
+    /// The number of a text that says so many times the module in words or with its symbol, and the field of the module.
+    fn times_modules<'t>(&self, text: &'t str) -> Option<(&'t str, &'static str)> {
+        let (field, _) = self.counts_in?;
+        let (number, unit) = split_quantity(text);
+        let factor = unit.trim_start_matches(['*', '·', '×', 'x', ' ']);
+        let is_module = match factor {
+            "m" => factor.len() < unit.len(),
+            _ => MODULES.contains(&factor.to_lowercase().as_str()),
+        };
+        (is_module && number.parse::<f64>().is_ok()).then_some((number, field))
+    }
+
     /// What to write for a unit that no study has.
     fn foreign(&self, text: &str) -> Option<String> {
+        if let Some(decimal) = notation::in_decimals(text) {
+            let help = self.read(&decimal, false).err().and_then(|wrong| wrong.help);
+            return Some(help.unwrap_or_else(|| format!("write `{decimal}`")));
+        }
         let (number, unit) = split_quantity(text);
         let is_expected = |dimension| self.dimension == Some(dimension);
         if let Some(powers) = units::with_powers(unit) {
             let read = parse_quantity(&format!("{number} {powers}")).ok()?;
-            let is_what = read.dimension.describe().0;
-            return Some(match self.dimension {
-                Some(dimension) if dimension == read.dimension => format!("write `{number} {powers}`"),
-                _ => format!("a power is written {}, which is {is_what}", quote(&powers)),
-            });
+            return match (self.dimension, read.dimension.describe()) {
+                (Some(dimension), _) if dimension == read.dimension => Some(format!("write `{number} {powers}`")),
+                // A unit of nothing that has a name is not the one that was meant.
+                (_, (_, [])) => None,
+                (_, (name, _)) => Some(format!("{} is {}, the unit of {name}", quote(unit), quote(&powers))),
+            };
         }
         let (factor, own) = match units::foreign_unit(unit)? {
             ForeignUnit::None(why) => return Some(why.to_owned()),
@@ -62,7 +82,7 @@ impl Measure<'_> {
                 let converted = number.parse::<f64>().ok()? * factor;
                 format!("write `{} {own}`: {one}", words::number(converted))
             }
-            Some(_) => format!("{one}, {}", dimension.describe().0),
+            Some(_) => format!("{one}, {}", units::described(dimension)),
             None => format!("{one}; {}", self.without_unit(text, read)),
         })
     }
@@ -76,15 +96,19 @@ impl Measure<'_> {
         };
         let mut same = units::symbols().filter(|known| known.eq_ignore_ascii_case(symbol)).filter(fits);
         match (same.next(), same.next()) {
+            // Another letter is another unit: `mN` is a thousandth of a newton, and no slip for `kN`.
             (Some(only), None) => Some(only),
-            // Another letter of a short symbol is another unit: `mN` is a thousandth of a newton, and no slip for `kN`.
-            _ if symbol.len() < SPELLED_OUT => None,
-            _ => declare::error::nearest(symbol, units::symbols().filter(fits)),
+            _ => None,
         }
     }
 
     pub(super) fn unreadable(&self, text: &str, error: UnitError) -> Diagnostic {
         let shown = quote(text);
+        if let Some((number, field)) = self.times_modules(text) {
+            let message = format!("{shown} has a unit; {} is a plain number", quote(self.name));
+            return Diagnostic::new(message)
+                .help(format!("{} counts in `{field}`; write `{number}`", quote(self.name)));
+        }
         let is_unit = matches!(error, UnitError::Unknown(_) | UnitError::Malformed { .. });
         if let Some(help) = if is_unit { self.foreign(text) } else { None } {
             let unit = quote(split_quantity(text).1);
@@ -110,7 +134,12 @@ impl Measure<'_> {
                     quote(&unit),
                     self.expected()
                 );
-                Diagnostic::new(message).help(words::unit_instead(text, instead.as_deref()))
+                let fits =
+                    |unit: &String| units::parse_unit(unit).is_ok_and(|unit| Some(unit.dimension) == self.dimension);
+                Diagnostic::new(message).help(match self.dimension {
+                    None => "write the number without a unit".to_owned(),
+                    Some(_) => words::unit_instead(text, instead.filter(fits).as_deref()),
+                })
             }
             UnitError::Ambiguous { unit, readings } => {
                 let message =

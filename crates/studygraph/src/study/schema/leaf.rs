@@ -6,6 +6,7 @@
 use serde_json::{Value, json};
 
 use crate::study::assemble::NAME_PATTERN;
+use crate::study::identity::MOST;
 use crate::study::varied::COLUMN_PATTERN;
 use crate::study::words;
 use declare::units::{ANGLE, Dimension, FORCE, LENGTH, RATIO, TIME, in_unit, parse_quantity, parse_unit, symbols};
@@ -174,7 +175,7 @@ const NAME_TYPES: [&str; 3] = ["string", "integer", "boolean"];
 
 /// The name of a study.
 pub fn name() -> Value {
-    explained(json!({ "type": NAME_TYPES, "pattern": NAME_PATTERN, "minimum": 0 }), NAMES)
+    explained(json!({ "type": NAME_TYPES, "pattern": NAME_PATTERN, "minimum": 0, "exclusiveMaximum": MOST }), NAMES)
 }
 
 /// Keys of a mapping, by their pattern. Editors see `<<`, which merges another mapping into this one, as a key.

@@ -113,6 +113,34 @@ fn marks_of_missing_values_are_named_and_left_out_on_request() {
     }
     let several = "# missing: [---, NaN, 9999]\nx [mm], y [um]\n4, -1\n5, ---\n6, nan\n7, 9999.0\n8, -2\n";
     assert_eq!(of(several, "a.csv"), ["x: `4 mm` `8 mm`", "y: `-1 um` `-2 um`"]);
+    // Marks that are numbers are compared as numbers, with a decimal point or a decimal comma.
+    for (mark, written) in [
+        ("-999,9", "-999,9"),
+        ("-999,9", "-999,90"),
+        ("\"-999,9\"", "-999,9"),
+        ("-999.9", "-999,9"),
+        ("-999", "-999,0"),
+        ("-999", "-999,000"),
+        ("-999,0", "-999"),
+        ("-9,99e2", "-999"),
+        ("NaN,-999,9", "-999,9"),
+        ("[NaN, -999,9]", "-999,9"),
+    ] {
+        let text = format!("# missing: {mark}\nx [mm]; y [um]\n9;-1,5\n5;{written}\n6;9,0\n");
+        assert_eq!(of(&text, "a.csv"), ["x: `9 mm` `6 mm`", "y: `-1.5 um` `9.0 um`"], "{mark} {written}");
+    }
+    for (mark, written) in [("-999", "-999.0"), ("-999.0", "-999"), ("NaN, -999", "-999.00")] {
+        let text = format!("# Missing: {mark}\nx [mm], y [um]\n9,-1.5\n5,{written}\n6,9.0\n");
+        assert_eq!(of(&text, "a.csv"), ["x: `9 mm` `6 mm`", "y: `-1.5 um` `9.0 um`"], "{mark} {written}");
+    }
+    // Of two lines with marks both count.
+    assert_eq!(of("# missing: NaN\n# missing: -999\nx [mm]\n1\nNaN\n-999\n", "a.csv"), ["x: `1 mm`"]);
+    assert_eq!(
+        of("# missing: -999,9\nx [mm], y [um]\n4,-1\n5,9\n", "a.csv"),
+        ["1:12: `-999,9` can be read as one mark and as two; write a space behind a comma between two marks, and a \
+          decimal point in a number"]
+    );
+    assert!(of("x [mm]\n-9999.9\n", "a.csv")[0].contains("stands for a missing value"));
     // What is a number stays one.
     assert_eq!(
         of("x [mm]\n999\n9998\n-0.5\n.5\n99.99\n", "a.csv"),
@@ -144,11 +172,25 @@ fn one_of_several_teeth_is_chosen_or_all_are_averaged() {
             "a.csv[tooth=mean]",
             "1:8: the places in `x` are not the same",
         ),
-        (flanks, "a.csv[tooth=1]", "1:1: the column `flank` has no unit"),
+        (
+            flanks,
+            "a.csv[tooth=1]",
+            "1:1: the column `flank` is no field; name the lines that count behind the file, `\"NAME.csv[flank=left]\"`",
+        ),
+        ("Zahn-Nr; x [mm]\n1; 4\n", "a.csv", "1:1: the column `Zahn-Nr` is no field; call the column `tooth`"),
+        ("Flanke [-]; x [mm]\n1; 4\n", "a.csv", "1:1: the column `Flanke` is no field; name the lines"),
     ] {
         let said = of(text, name);
         assert!(said[0].starts_with(expected), "{name}: {said:?}");
     }
+    // Letters may be large or small in names of columns, as in values.
+    for name in ["Tooth", "TOOTH", "tooth"] {
+        let text = text.replace("tooth", name);
+        assert_eq!(of(&text, "a.csv[tooth=6]"), ["x: `4 mm` `5 mm`", "y: `-3 um` `-5 um`"], "{name}");
+        assert!(of(&text, "a.csv")[0].starts_with("1:1: this file has several teeth"), "{name}");
+    }
+    let german = "Zahn; Flanke; x [mm]\n1; Links; 4\n1; Rechts; 5\n2; Links; 6\n";
+    assert_eq!(of(german, "a.csv[zahn=1, Flanke=rechts]"), ["x: `5 mm`"]);
     for wrong in ["a.csv[tooth]", "a.csv[]", "a.csv[=3]", "a.csv[tooth=]"] {
         assert!(file_and_conditions(wrong).is_err(), "{wrong}");
     }

@@ -8,7 +8,7 @@ const CHANGES: &[(&str, &str, &str)] = &[
     (
         "module: 3 mm",
         "module: 3 mm^4",
-        "8:13: `3 mm^4` has a unit of another kind; a length (for example `3 mm`) is expected",
+        "8:13: `3 mm^4` is a quantity in m^4; a length (for example `3 mm`) is expected",
     ),
     ("module: 3 mm", "module: 3 mm^3", "8:13: `3 mm^3` is a volume; a length (for example `3 mm`) is expected"),
     (
@@ -69,7 +69,7 @@ const CHANGES: &[(&str, &str, &str)] = &[
     (
         "{ addendum: 1.25 }",
         "{ addendum: 1.25 mm }",
-        "9:23: `1.25 mm` has a unit; `addendum` is a plain number\n  help: what is measured in `mm` is another quantity, not this number with a unit",
+        "9:23: `1.25 mm` has a unit; `addendum` is a plain number\n  help: a quantity in `mm` is another quantity, not this number with a unit",
     ),
     (
         "{ addendum: 1.25 }",
@@ -102,7 +102,7 @@ const CHANGES: &[(&str, &str, &str)] = &[
     (
         "teeth: 19",
         "teeth: 19 mm",
-        "10:22: `teeth` must be a whole number without a unit, not `19 mm`\n  help: what is measured in `mm` is another quantity, no count",
+        "10:22: `teeth` must be a whole number without a unit, not `19 mm`\n  help: a quantity in `mm` is another quantity, no count",
     ),
     ("teeth: 19", "teeth: 19.5", "10:22: `teeth` must be a whole number in digits, not `19.5`"),
     (

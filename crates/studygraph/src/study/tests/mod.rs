@@ -169,20 +169,29 @@ static KIND_STE: Kind = kind!("ste", STE);
 static KIND_REPORT: Kind = kind!("report", REPORT);
 
 static FOREIGN: &[Foreign] = &[
-    Foreign { word: "z", field: Some("teeth"), remark: "", is_other: false, remedy: None },
-    Foreign { word: "bore_diameter", field: Some("bore_radius"), remark: "half of it", is_other: false, remedy: None },
+    Foreign { word: "z", field: Some("teeth"), inside: &[], remark: "", is_other: false, remedy: None },
+    Foreign {
+        word: "bore_diameter",
+        field: Some("bore_radius"),
+        inside: &[],
+        remark: "half of it",
+        is_other: false,
+        remedy: None,
+    },
     Foreign {
         word: "diameter",
         field: Some("teeth"),
+        inside: &[],
         remark: "a length over the module",
         is_other: false,
         remedy: None,
     },
-    Foreign { word: "helix_angle", field: None, remark: "spur gears only", is_other: false, remedy: None },
+    Foreign { word: "helix_angle", field: None, inside: &[], remark: "spur gears only", is_other: false, remedy: None },
 ];
 static PROGRAM: Program = Program {
     kinds: KINDS,
-    foreign: FOREIGN,
+    foreign: &[FOREIGN],
+    derived: &[],
     named: &[],
     code_of: |_| String::new(),
     counters: &[],

@@ -148,7 +148,7 @@ fn words_of_others_lead_to_the_field() {
         (
             "module: 3 mm",
             "module: 3 mm\n    z: 19",
-            "9:5: unknown field `z` of `pair`\n  help: a study calls it `teeth`, in another place; known here: `kind`, `module`, `pressure_angle`, `rack`, `youngs_modulus`, `pinion`, `overlap`, `ground`, `side`, `note`, `bolts`",
+            "9:5: unknown field `z` of `pair`\n  help: a study calls it `teeth`, in `pinion`; known here: `kind`, `module`, `pressure_angle`, `rack`, `youngs_modulus`, `pinion`, `overlap`, `ground`, `side`, `note`, `bolts`",
         ),
         // Not at the top of a study, where there are no fields of stages.
         (
