@@ -105,14 +105,11 @@ impl Cache {
             other => other.to_string(),
         };
         let mut faulty: Vec<Faulty> = unseen.into_iter().map(|(path, error)| unread(path, reason(error))).collect();
+        // What is somebody's and can be read does no harm there.
         for path in content.foreign.into_iter().filter(|path| is_in_an_entrys_place(path)) {
-            faulty.push(match presence::metadata(&path) {
-                Err(error) => unread(path, error.to_string()),
-                Ok(_) => {
-                    let problem = "it stands in the place of entries".to_owned();
-                    Faulty { path, problem, left: Left::Damaged }
-                }
-            });
+            if let Err(error) = presence::metadata(&path) {
+                faulty.push(unread(path, error.to_string()));
+            }
         }
         for (path, key) in content.entries {
             if let Err(error) = File::open(&path)
