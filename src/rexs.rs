@@ -26,6 +26,7 @@ mod written;
 use std::fmt;
 use std::path::Path;
 
+use declare::text::merge_conflict;
 use roxmltree::{Document, ParsingOptions};
 
 use self::gear::RexsPair;
@@ -111,6 +112,20 @@ pub fn geometry(text: &str, stage: Option<&str>) -> Result<String, Refusal> {
 /// # Errors
 /// As [`geometry`].
 pub fn import(text: &str, stage: Option<&str>) -> Result<Imported, Refusal> {
+    imported(text, stage).map_err(|refusal| merged(text).unwrap_or(refusal))
+}
+
+/// Both versions of a merge in a file that is refused. A single mark may be a line of a comment.
+fn merged(text: &str) -> Option<Refusal> {
+    let (first, last) = merge_conflict(text).filter(|(first, last)| first < last)?;
+    let message = format!(
+        "a merge left both versions from line {first} to {last}; keep one, and remove the lines that begin with `<<<<<<<`, \
+         `|||||||`, `=======` or `>>>>>>>`"
+    );
+    Some(Refusal { place: Some((u32::try_from(first).ok()?, 1)), ..Refusal::new(message) })
+}
+
+fn imported(text: &str, stage: Option<&str>) -> Result<Imported, Refusal> {
     if text.len() > MOST_BYTES {
         return Err(too_large());
     }

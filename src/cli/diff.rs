@@ -48,10 +48,11 @@ pub(super) fn diff(asked: &Differences, places: &Places, quiet: bool) -> Result<
     };
     let cache = Cache::open_if_there(&places.cache).map_err(|error| Ending::Usage(error.to_string()))?;
     let ignored = |study: &str| {
-        let (Ok(repository), Some(folder)) = (&repository, after.path()) else { return false };
-        before.path().is_none() && repository.leaves_out(&folder.join(study).join(MANIFEST))
+        let (Ok(repository), Some(folder), None) = (&repository, after.path(), before.path()) else { return Ok(false) };
+        repository.leaves_out(&folder.join(study).join(MANIFEST))
     };
-    let not_kept = |file: &Path| Repository::around(file).is_ok_and(|repository| repository.leaves_out(file));
+    // Outside of a repository every file counts.
+    let not_kept = |file: &Path| Repository::around(file).map_or(Ok(false), |repository| repository.leaves_out(file));
     let options = Options {
         studies: &studies,
         tolerances: &tolerances,

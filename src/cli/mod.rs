@@ -118,7 +118,7 @@ pub fn main(words: impl Iterator<Item = OsString>) -> i32 {
             return i32::from(error.use_stderr() || printed.is_err());
         }
     };
-    match command(&arguments) {
+    let code = match command(&arguments) {
         Ok(()) => 0,
         Err(ending) => {
             match &ending {
@@ -128,7 +128,8 @@ pub fn main(words: impl Iterator<Item = OsString>) -> i32 {
             }
             ending.code()
         }
-    }
+    };
+    if progress::is_unwritten() { 1 } else { code }
 }
 
 fn command(arguments: &Arguments) -> Result<(), Ending> {

@@ -5,6 +5,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::{ErrorKind, IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
@@ -352,16 +353,23 @@ pub fn rough(seconds: f64) -> String {
     }
 }
 
-/// Writes to standard output what was asked for; a reader that has closed it (`| head`) ends the program quietly.
+/// Set once an answer could not be written.
+static UNWRITTEN: AtomicBool = AtomicBool::new(false);
+
+/// Writes to standard output what was asked for. A command whose answer is not taken comes to its own end all the same, which
+/// removes its temporary files: quietly where the reader has closed the pipe (`| head`).
 pub fn out(text: &str) {
-    match write(text) {
-        Ok(()) => {}
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => std::process::exit(0),
-        Err(error) => {
-            complain(&format!("gearstudy: cannot write to standard output: {error}"));
-            std::process::exit(1);
-        }
+    if let Err(error) = write(text)
+        && error.kind() != ErrorKind::BrokenPipe
+        && !UNWRITTEN.swap(true, Ordering::Relaxed)
+    {
+        complain(&format!("gearstudy: cannot write to standard output: {error}"));
     }
+}
+
+/// Whether an answer could not be written, though somebody waits for it.
+pub(super) fn is_unwritten() -> bool {
+    UNWRITTEN.load(Ordering::Relaxed)
 }
 
 /// Writes to standard output how the work goes; the work goes on when nobody reads it.

@@ -52,7 +52,8 @@ pub(super) fn query(asked: &Question, places: &Places, quiet: bool) -> Result<()
         return Ok(());
     };
     let limit = Duration::from_secs(asked.timeout.into());
-    let answer = ask(text, &mut tables, limit).map_err(Ending::Query)?;
+    let answer = ask(text, &mut tables, limit);
+    let answer = answer.map_err(if tables.is_unread() { Ending::Usage } else { Ending::Query })?;
     match (asked.output.as_deref(), target) {
         (Some(path), Some(target)) => write(&answer, path, target, quiet),
         _ => {

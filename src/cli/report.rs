@@ -12,6 +12,7 @@ use super::pages::{self, Counts};
 use super::print::objects;
 use super::progress::{self, out};
 use super::show::{none_yet, tell_stale};
+use super::status::{OTHER_PAGE, is_up_to_date, not_here};
 use super::{Ending, json as shapes, studies};
 use crate::program::PROGRAM;
 use studygraph::history::side::{cached, published};
@@ -54,7 +55,7 @@ pub(super) fn report(
         let folder = Folder::new(&places.results, &study.name).telling(progress::told);
         let said = if check { looked_at(study, &folder, places)? } else { drawn(study, &folder, places)? };
         let stale = if check {
-            stale(study, &folder)?
+            stale(study, &folder, places)?
         } else {
             tell_stale(study, &folder, quiet);
             None
@@ -119,12 +120,20 @@ fn drawn(study: &Study, folder: &Folder, places: &Places) -> Result<Said, Ending
     said.take().ok_or_else(|| none_yet(study, folder))
 }
 
-/// Why the verdicts are not those of the study as it is now.
-fn stale(study: &Study, folder: &Folder) -> Result<Option<String>, Ending> {
+/// Why the verdicts are not those of the study as it is now, or not all of the results is here.
+fn stale(study: &Study, folder: &Folder, places: &Places) -> Result<Option<String>, Ending> {
     let usage = |problem: String| Ending::Usage(format!("{}: {problem}", study.path.display()));
     let known = folder.known().map_err(|error| usage(error.to_string()))?;
     let standing = standing_of(study, known.as_ref()).map_err(|error| usage(error.message))?;
-    Ok(standing.problem())
+    if let Some(problem) = standing.problem() {
+        return Ok(Some(problem));
+    }
+    let is_all_here = standing.absent().is_empty() && standing.missing.is_empty();
+    // Only tables that are not here are looked for in it.
+    let cache = if is_all_here { Ok(None) } else { Cache::open_if_there(&places.cache) };
+    let (_, lost) = not_here(&standing, cache.map_err(|error| usage(error.to_string()))?.as_ref());
+    let missing = lost.first().map(|file| format!("`{}` is missing", folder.path().join(file).display()));
+    Ok(missing.or_else(|| (!is_up_to_date(&standing)).then(|| OTHER_PAGE.to_owned())))
 }
 
 fn value(study: &Study, folder: &Folder, said: &Said, stale: Option<&str>, check: bool) -> Value {

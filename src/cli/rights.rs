@@ -35,7 +35,7 @@ pub(super) fn license(text: &str) -> Result<String, String> {
 
 /// A word of an SPDX expression as the standard writes it.
 fn identifier(word: &str) -> Result<String, String> {
-    if ["(", ")"].contains(&word) {
+    if ["(", ")"].contains(&word) || is_own(word) {
         return Ok(word.to_owned());
     }
     let (name, later) = word.strip_suffix('+').map_or((word, ""), |name| (name, "+"));
@@ -49,6 +49,17 @@ fn identifier(word: &str) -> Result<String, String> {
     let near = licenses().find(version).or_else(|| nearest(word, licenses()));
     let help = near.map_or_else(|| "for example `CC-BY-4.0`".to_owned(), |near| format!("did you mean `{near}`?"));
     Err(format!("`{word}` is no SPDX identifier of a licence; {help}"))
+}
+
+/// Whether a word names a licence, or an addition to one, that is not in the SPDX list, by SPDX 3.0, annex B: `LicenseRef-` or
+/// `AdditionRef-` and a name of its own, and before it the document that has it, if that is another one.
+fn is_own(word: &str) -> bool {
+    let is_name = |text: &str, start: &str| {
+        let own = text.strip_prefix(start).unwrap_or_default();
+        !own.is_empty() && own.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"-.".contains(&byte))
+    };
+    let (document, name) = word.split_once(':').unwrap_or(("DocumentRef-this", word));
+    is_name(document, "DocumentRef-") && (is_name(name, "LicenseRef-") || is_name(name, "AdditionRef-"))
 }
 
 /// A name, and an ORCID iD behind it where there is one.
@@ -130,7 +141,7 @@ mod tests {
         assert_eq!(license("CC-BY-4.0").as_deref(), Ok("CC-BY-4.0"));
         assert!(license("LGPL-2.1+").is_ok() && license("MIT").is_ok());
         assert!(license("CC-BY-4").unwrap_err().contains("did you mean `CC-BY-4.0`?"), "{:?}", license("CC-BY-4"));
-        for wrong in ["", "my own", "../x", "NO-SUCH-1.0", "LicenseRef-mine"] {
+        for wrong in ["", "my own", "../x", "NO-SUCH-1.0", "LicenseRef-", "LicenseRef-a_b", "DocumentRef-a:MIT"] {
             assert!(license(wrong).unwrap_err().contains("no SPDX "), "{wrong}");
         }
     }
@@ -144,6 +155,8 @@ mod tests {
             (" (MIT  OR ISC )and( CC-BY-4.0)", "(MIT OR ISC) AND (CC-BY-4.0)"),
             ("GPL-2.0-or-later WITH Classpath-exception-2.0", "GPL-2.0-or-later WITH Classpath-exception-2.0"),
             ("EUPL-1.1+", "EUPL-1.1+"),
+            ("LicenseRef-own.1", "LicenseRef-own.1"),
+            ("mit or DocumentRef-a:LicenseRef-b", "MIT OR DocumentRef-a:LicenseRef-b"),
         ] {
             assert_eq!(license(given).as_deref(), Ok(expected));
         }

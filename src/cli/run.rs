@@ -284,7 +284,7 @@ fn summed_up(study: &Study, outcome: &Outcome, folder: &Folder, verdicts: Option
 /// # Errors
 /// When a run would replace the results of another study of the same name.
 pub(super) fn check_owner(study: &Study, places: &Places) -> Result<(), Ending> {
-    ownership::check(study, &Folder::new(&places.results, &study.name)).map_err(|error| unknown(&error))
+    ownership::check(study, &Folder::new(&places.results, &study.name)).map(drop).map_err(|error| unknown(&error))
 }
 
 /// A plan writes nothing: where there is no cache yet, an empty one elsewhere stands for it.

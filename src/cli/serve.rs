@@ -221,7 +221,12 @@ fn request(stream: &mut impl Read) -> io::Result<Request> {
         let status = parsed.parse(&head).map_err(|_| ErrorKind::InvalidData)?;
         if status.is_complete() {
             let mut hosts = parsed.headers.iter().filter(|header| header.name.eq_ignore_ascii_case("host"));
-            let host = hosts.next().map(|header| header.value.to_vec()).unwrap_or_default();
+            let (host, other) = (hosts.next().map(|header| header.value.to_vec()), hosts.next());
+            // RFC 9112, section 3.2: no request has two, and none of version 1.1 has none.
+            if other.is_some() || (host.is_none() && parsed.version == Some(1)) {
+                return Err(ErrorKind::InvalidData.into());
+            }
+            let host = host.unwrap_or_default();
             let target = parsed.path.unwrap_or_default().to_owned();
             return Ok(Request { is_get: parsed.method == Some("GET"), target, host });
         }

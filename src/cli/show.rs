@@ -56,7 +56,12 @@ pub(super) fn new_study(file: &Path, template: &str, as_json: bool) -> Result<()
         }
         cannot(error)
     })?;
-    opened.write_all(text.as_bytes()).map_err(cannot)?;
+    if let Err(error) = opened.write_all(text.as_bytes()) {
+        drop(opened);
+        // A part of a study would be in the way of the next try; where it cannot be removed, the message names it.
+        let _ = std::fs::remove_file(file);
+        return Err(cannot(error));
+    }
     let shown = file.display().to_string();
     if as_json {
         let study = load_text(&text, file).ok().map(|study| study.name);

@@ -12,10 +12,13 @@ use super::{Ending, json, studies};
 use crate::program;
 use declare::error::Diagnostic;
 use studygraph::runner::standing::{Condition, StageStanding, Standing, standing_of};
-use studygraph::store::cache::{Cache, Lookup};
+use studygraph::store::cache::{Cache, Left, Lookup};
 use studygraph::store::index;
 use studygraph::store::results::{FileState, Folder, Known, is_drawn};
 use studygraph::study::{self, Settings, Study};
+
+/// What is said of page and figures that are not as the last run wrote them.
+pub(super) const OTHER_PAGE: &str = "the report is not that of the last run";
 
 /// A study and where it stands.
 struct Told {
@@ -120,20 +123,33 @@ pub(super) fn status(
         advice.push(format!("missing; `gearstudy run` writes it anew:\n  {}", lost.join("\n  ")));
     }
     let of_cache = cache.as_ref().filter(|_| check).map(|cache| cache.verify(true)).unwrap_or_default();
-    if !of_cache.is_empty() {
-        let named: Vec<String> = of_cache.iter().map(|(path, why)| format!("{}: {why}", path.display())).collect();
-        advice.push(format!("damaged in the cache, and gone from it now:\n  {}", named.join("\n  ")));
+    let of_cache = |left: Left| of_cache.iter().filter(move |faulty| faulty.left == left);
+    for (left, what) in [
+        (Left::Nothing, "damaged in the cache, and gone from it now"),
+        (Left::Damaged, "damaged in the cache, and still there"),
+    ] {
+        let named: Vec<String> =
+            of_cache(left).map(|faulty| format!("{}: {}", faulty.path.display(), faulty.problem)).collect();
+        if !named.is_empty() {
+            advice.push(format!("{what}:\n  {}", named.join("\n  ")));
+        }
     }
     if !stale.is_empty() {
         advice.push(format!("not up to date: {}", stale.join(", ")));
     }
+    let unread_entries =
+        of_cache(Left::Unread).map(|faulty| format!("cannot read `{}`: {}", faulty.path.display(), faulty.problem));
+    let unread_entries: Vec<String> = unread_entries.collect();
+    if !advice.is_empty() {
+        advice.extend(unread_entries.iter().cloned());
+    }
     let is_invalid = |fault: &Fault| matches!(fault, Fault::Study(error) if !error.is_of_no_file());
     let (invalid, number) = (faults.iter().any(is_invalid), faults.len());
     match faults.pop() {
-        None if advice.is_empty() => match unread.filter(|_| check) {
-            Some(problem) => Err(Ending::Usage(problem)),
-            None => Ok(()),
-        },
+        None if advice.is_empty() => {
+            let unread: Vec<String> = unread.into_iter().filter(|_| check).chain(unread_entries).collect();
+            if unread.is_empty() { Ok(()) } else { Err(Ending::Usage(unread.join("\n"))) }
+        }
         None => Err(Ending::Differs(advice.join("\n"))),
         Some(Fault::Study(error)) if files.len() == 1 => Err(Ending::Invalid(Box::new(error))),
         Some(Fault::Other(problem)) if files.len() == 1 => Err(Ending::Usage(problem)),
@@ -157,6 +173,13 @@ fn told(file: &Path, settings: &Settings, places: &Places, cache: Option<&Cache>
         .settled(look)
         .or_else(|odd| *odd)
         .map_err(|error| Fault::Other(format!("{}: {}", study.path.display(), error.message)))?;
+    let (uncached, lost) = not_here(&standing, cache);
+    Ok(Told { study, standing, read, uncached, lost })
+}
+
+/// The number of stages that are not stale, but whose tables the cache does not have; and the files that are not here and that
+/// the cache cannot give back.
+pub(super) fn not_here(standing: &Standing, cache: Option<&Cache>) -> (usize, Vec<String>) {
     let kept = |stage: &&StageStanding| {
         let kept = |key| cache.is_some_and(|cache| matches!(cache.look_up(key), Lookup::Found(_)));
         let is_stale = !matches!(stage.state, Condition::UpToDate | Condition::OtherRun(_));
@@ -168,8 +191,7 @@ fn told(file: &Path, settings: &Settings, places: &Places, cache: Option<&Cache>
         // Where tables are missing as well, as in a clone, the run that brings them makes page and HDF5 file.
         lost.extend(standing.missing.iter().cloned());
     }
-    let uncached = uncached.len();
-    Ok(Told { study, standing, read, uncached, lost })
+    (uncached.len(), lost)
 }
 
 fn standing_now(study: &Study, folder: &Folder, check: bool) -> Result<(Standing, Option<Read>), Diagnostic> {
@@ -200,7 +222,7 @@ fn is_odd(standing: &Standing) -> bool {
 }
 
 /// A clone has neither all tables nor the page, and is up to date nevertheless.
-fn is_up_to_date(standing: &Standing) -> bool {
+pub(super) fn is_up_to_date(standing: &Standing) -> bool {
     standing.is_up_to_date() && (standing.report || !standing.absent().is_empty())
 }
 
@@ -315,7 +337,7 @@ fn up_to_date(standing: &Standing, uncached: usize, next: impl Fn(&str) -> Strin
     // A page is drawn from what is here.
     let needs_run = absent.iter().filter(|file| !is_drawn(file)).count() > 0;
     match (if needs_run { absent.len() } else { 0 }, standing.report, uncached) {
-        (0, false, _) => format!("the report is not that of the last run; {}", next("report")),
+        (0, false, _) => format!("{OTHER_PAGE}; {}", next("report")),
         (0, true, 0) => "up to date".to_owned(),
         (0, true, some) => {
             let all = standing.stages.len();

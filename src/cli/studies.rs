@@ -14,20 +14,23 @@ use studygraph::runner::ownership::check_beside;
 use studygraph::study::identity::{self, FOLDER, name_of};
 use studygraph::study::{Settings, Study, named};
 
-/// The file that a word means: itself, or in the folder `studies` that of the study of this name, or the file of this name.
+/// The file that a word means: in the folder `studies` that of the study of this name, itself, or there the file of this name.
+/// A word with an ending or a folder is a path.
 ///
 /// # Errors
 /// When it is none of them, but nearly a name; when two studies have this name; when files cannot be read.
 pub(super) fn file(word: &Path) -> Result<PathBuf, Ending> {
     let is_name = word.components().count() == 1 && word.extension().is_none();
     let unread = |problem: std::io::Error| Ending::Usage(presence::unread(word)(problem));
-    // A folder of this name, often one beside `studies`, is no study.
-    if !is_name || presence::link_metadata(word).map_err(unread)?.is_some_and(|found| !found.is_dir()) {
+    if !is_name {
         return Ok(word.to_owned());
     }
+    // A folder of this name, often one beside `studies`, is no study.
+    let is_here = presence::link_metadata(word).map_err(unread)?.is_some_and(|found| !found.is_dir());
+    let here = is_here.then(|| word.to_owned());
     let name = word.to_string_lossy();
     let all = all()?;
-    if let Some(found) = owner(&all, &name)? {
+    if let Some(found) = owner(all.iter().chain(&here), &name)?.or(here) {
         return Ok(found);
     }
     let stem = |path: &PathBuf| path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
@@ -55,13 +58,13 @@ pub(super) fn file(word: &Path) -> Result<PathBuf, Ending> {
 ///
 /// # Errors
 /// When two do: their results would overwrite each other.
-fn owner(files: &[PathBuf], name: &str) -> Result<Option<PathBuf>, Ending> {
+fn owner<'a>(files: impl IntoIterator<Item = &'a PathBuf>, name: &str) -> Result<Option<PathBuf>, Ending> {
     // A file that cannot be read has no name that is known; it can still be meant by its own.
     let is_owner = |file: &&PathBuf| name_of(file).is_ok_and(|stated| stated.is_some_and(|stated| stated == name));
-    let mut owners = files.iter().filter(is_owner);
-    match (owners.next(), owners.next()) {
-        (Some(one), Some(other)) => Err(clash(one, other, name)),
-        (one, _) => Ok(one.cloned()),
+    let owners = identity::one_path_each(files.into_iter().filter(is_owner).cloned());
+    match &owners[..] {
+        [one, other, ..] => Err(clash(one, other, name)),
+        owners => Ok(owners.first().cloned()),
     }
 }
 
@@ -89,15 +92,16 @@ pub(super) fn only_on_demand(study: &Study, name: &str) -> Option<String> {
     is_it.then(|| format!("`{name}` is computed on demand only: gearstudy run {file} --want {name}"))
 }
 
-/// The files of the studies that were named, or of all in the folder `studies`.
+/// The files of the studies that were named, or of all in the folder `studies`, each once.
 ///
 /// # Errors
 /// As [`file`]; when there are none, or the folder cannot be read.
 pub(super) fn named_or_all(named: &[PathBuf]) -> Result<Vec<PathBuf>, Ending> {
     if !named.is_empty() {
-        return named.iter().map(|word| file(word)).collect();
+        let files = named.iter().map(|word| file(word)).collect::<Result<Vec<_>, _>>()?;
+        return Ok(identity::one_path_each(files));
     }
-    let all = all()?;
+    let all = identity::one_path_each(all()?);
     if all.is_empty() {
         return Err(Ending::Usage(format!("there are no studies in `{FOLDER}` here; name one")));
     }
@@ -111,8 +115,9 @@ pub(super) fn named_or_all(named: &[PathBuf]) -> Result<Vec<PathBuf>, Ending> {
 pub(super) fn load_all(words: &[PathBuf], changes: &Changes) -> Result<Vec<Study>, Ending> {
     let settings = settings(changes);
     let mut studies: Vec<Study> = Vec::new();
-    for word in words {
-        let study = program::load_changed(&file(word)?, &settings).map_err(|error| Ending::Invalid(Box::new(error)))?;
+    let files = words.iter().map(|word| file(word)).collect::<Result<Vec<_>, _>>()?;
+    for file in identity::one_path_each(files) {
+        let study = program::load_changed(&file, &settings).map_err(|error| Ending::Invalid(Box::new(error)))?;
         distinct(&studies, &study)?;
         check_beside(&study).map_err(|error| unknown(&error))?;
         studies.push(study);

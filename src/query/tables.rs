@@ -25,6 +25,27 @@ pub struct Tables<'a> {
     /// Has tables that are not kept with the results.
     cache: Option<&'a Cache>,
     sides: Vec<(Option<String>, Side)>,
+    /// Whether a table was not read since a file that is there cannot be.
+    is_unread: bool,
+}
+
+/// Why there is no table.
+struct Failure {
+    message: String,
+    /// A file that is there cannot be read.
+    is_unread: bool,
+}
+
+impl Failure {
+    fn unread(message: impl Into<String>) -> Self {
+        Self { message: message.into(), is_unread: true }
+    }
+}
+
+impl From<String> for Failure {
+    fn from(message: String) -> Self {
+        Self { message, is_unread: false }
+    }
 }
 
 /// The tables that there are.
@@ -53,9 +74,9 @@ struct Studies {
 impl Studies {
     /// # Errors
     /// When this study is there, but cannot be read.
-    fn check(&self, name: &str) -> Result<(), String> {
+    fn check(&self, name: &str) -> Result<(), Failure> {
         let problem = self.unread.iter().find(|(unread, _)| unread == name);
-        problem.map_or(Ok(()), |(_, problem)| Err(problem.clone()))
+        problem.map_or(Ok(()), |(_, problem)| Err(Failure::unread(problem)))
     }
 
     fn problems(&self) -> impl Iterator<Item = &str> {
@@ -66,7 +87,7 @@ impl Studies {
 impl<'a> Tables<'a> {
     #[must_use]
     pub fn new(open: Open<'a>, on_demand: OnDemand<'a>, study: Option<&'a str>, cache: Option<&'a Cache>) -> Self {
-        Self { open, on_demand, study, cache, sides: Vec::new() }
+        Self { open, on_demand, study, cache, sides: Vec::new(), is_unread: false }
     }
 
     /// The table of this name: `stage.table` or `study.stage.table`, behind `revision:` where another side is meant.
@@ -74,6 +95,19 @@ impl<'a> Tables<'a> {
     /// # Errors
     /// One sentence: there is none, with the nearest there is, or its values are not kept.
     pub fn read(&mut self, name: &str) -> Result<Table, String> {
+        self.found(name).map_err(|Failure { message, is_unread }| {
+            self.is_unread |= is_unread;
+            message
+        })
+    }
+
+    /// Whether [`Tables::read`] found none since a file that is there cannot be read.
+    #[must_use]
+    pub fn is_unread(&self) -> bool {
+        self.is_unread
+    }
+
+    fn found(&mut self, name: &str) -> Result<Table, Failure> {
         // A revision may have colons in it, a table has none.
         let (revision, inside) = match name.rsplit_once(':') {
             Some((revision, inside)) => (Some(revision), inside),
@@ -99,8 +133,8 @@ impl<'a> Tables<'a> {
     pub fn list(&mut self) -> Result<List, String> {
         let wanted = self.study;
         let side = self.side(None)?;
-        let studies = studies(side)?;
-        known_study(&studies, wanted, side)?;
+        let studies = studies(side).map_err(|failure| failure.message)?;
+        known_study(&studies, wanted, side).map_err(|failure| failure.message)?;
         let problems = studies.problems().filter(|_| wanted.is_none()).map(str::to_owned).collect();
         let wanted = studies.sound.into_iter().filter(|study| wanted.is_none_or(|wanted| study.name == wanted));
         let tables = wanted.flat_map(|study| {
@@ -133,7 +167,7 @@ impl<'a> Tables<'a> {
 /// A table that a manifest lists and nobody has.
 struct Missed {
     folder: String,
-    why: String,
+    why: Failure,
 }
 
 fn table(
@@ -142,7 +176,7 @@ fn table(
     cache: Option<&Cache>,
     name: &str,
     on_demand: OnDemand<'_>,
-) -> Result<Result<Table, Missed>, String> {
+) -> Result<Result<Table, Missed>, Failure> {
     let studies = studies(side)?;
     let is_short = name.matches('.').count() < 2;
     if is_short {
@@ -157,25 +191,27 @@ fn table(
             studies.check(of)?;
         }
         if let Some(said) = parted(only, name).and_then(|(study, table)| on_demand(study, table)) {
-            return Err(said);
+            return Err(said.into());
         }
         let known = known(&studies.sound, only, name.matches('.').count());
         let help = std::iter::once(suggest(name, known.iter().map(String::as_str)));
         let help = help.chain(studies.problems().map(str::to_owned)).collect::<Vec<_>>().join("; ");
-        return Err(format!("there is no table `{name}` in {}; {help}", side.label));
+        return Err(format!("there is no table `{name}` in {}; {help}", side.label).into());
     };
-    Ok(match side.table(&of.folder, stage, record, cache).0 {
+    let (got, damage) = side.table(&of.folder, stage, record, cache);
+    Ok(match got {
         Got::Table(table) => Ok(*table),
         Got::Without(why) => {
-            let why = format!("`{name}` {why}, and the cache does not have it; `gearstudy run` computes it again");
+            let message = format!("`{name}` {why}, and the cache does not have it; `gearstudy run` computes it again");
+            let why = Failure { message, is_unread: damage.is_some() };
             Err(Missed { folder: of.folder.clone(), why })
         }
     })
 }
 
-fn studies(side: &Side) -> Result<Studies, String> {
+fn studies(side: &Side) -> Result<Studies, Failure> {
     let mut studies = Studies::default();
-    for folder in side.studies()? {
+    for folder in side.studies().map_err(Failure::unread)? {
         match side.manifest(&folder) {
             Ok(Some(manifest)) => {
                 let name = if side.is_single() { manifest.study.clone() } else { folder.clone() };
@@ -189,15 +225,19 @@ fn studies(side: &Side) -> Result<Studies, String> {
         return Ok(studies);
     }
     let problems: Vec<&str> = studies.problems().collect();
-    Err(if problems.is_empty() { format!("there are no results in {}", side.label) } else { problems.join("; ") })
+    Err(if problems.is_empty() {
+        format!("there are no results in {}", side.label).into()
+    } else {
+        Failure::unread(problems.join("; "))
+    })
 }
 
-fn known_study(studies: &Studies, wanted: Option<&str>, side: &Side) -> Result<(), String> {
+fn known_study(studies: &Studies, wanted: Option<&str>, side: &Side) -> Result<(), Failure> {
     let is_there = |wanted: &&str| studies.sound.iter().any(|study| study.name == **wanted);
     let Some(wanted) = wanted.filter(|wanted| !is_there(wanted)) else { return Ok(()) };
     studies.check(wanted)?;
     let help = suggest(wanted, studies.sound.iter().map(|study| study.name.as_str()));
-    Err(format!("there is no study `{wanted}` in {}; {help}", side.label))
+    Err(format!("there is no study `{wanted}` in {}; {help}", side.label).into())
 }
 
 fn find<'a>(

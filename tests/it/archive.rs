@@ -77,6 +77,57 @@ fn an_archive_takes_the_place_of_no_other_file() {
     desk.run(&["archive", "quick.yaml", "-o", "empty"], 0);
 }
 
+/// SPDX 3.0, annex B: a licence that is not in the list is `LicenseRef-` and a name of its own.
+#[test]
+fn a_licence_that_is_not_in_the_list_is_described_as_such() {
+    let desk = archived("quick.yaml", &[]);
+    for (given, id) in [
+        ("LicenseRef-own.1", "#LicenseRef-own.1"),
+        ("DocumentRef-a:LicenseRef-b", "#DocumentRef-a:LicenseRef-b"),
+        ("MIT OR LicenseRef-own", "#license"),
+    ] {
+        desk.run(&["archive", "quick.yaml", "-o", "own.zip", "--license", given], 0);
+        let value: Value = serde_json::from_slice(&entries(&desk.path("own.zip"))[METADATA]).unwrap();
+        let graph = value["@graph"].as_array().unwrap();
+        let entity =
+            |id: &str| graph.iter().find(|entity| entity["@id"] == id).unwrap_or_else(|| panic!("{id}: {value:#}"));
+        assert_eq!(entity("./")["license"]["@id"], id);
+        assert_eq!((&entity(id)["@type"], &entity(id)["name"]), (&"CreativeWork".into(), &given.into()));
+        assert!(
+            !value.to_string().contains("licenses/LicenseRef") && !value.to_string().contains("licenses/DocumentRef")
+        );
+        let own = given.rsplit(' ').next().unwrap();
+        assert!(entity(&format!("#{own}"))["description"].as_str().unwrap().contains("not in the SPDX list"));
+        fs::remove_file(desk.path("own.zip")).unwrap();
+    }
+    for wrong in ["LicenseRef-", "LicenseRef-a_b", "LicenseRef-a WITH", "DocumentRef-a:MIT"] {
+        let (_, error) = desk.run(&["archive", "quick.yaml", "-o", "own.zip", "--license", wrong], 1);
+        assert!(error.contains("SPDX"), "{wrong}: {error}");
+    }
+}
+
+/// One of them is to be named.
+#[test]
+fn a_folder_with_several_crates_says_which_there_are() {
+    let desk = archived("quick.yaml", &[]);
+    for name in ["two/first", "two/deep/second"] {
+        for (file, bytes) in entries(&desk.path("a.zip")) {
+            let path = desk.path(name).join(file);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, bytes).unwrap();
+        }
+    }
+    let (_, error) = desk.run(&["verify", "two"], 1);
+    assert!(error.contains("it has 2 crates, in `deep/second/` and `first/`: name one of them"), "{error}");
+    desk.run(&["verify", "two/first", "--quiet"], 0);
+    let inside: Entries =
+        entries(&desk.path("a.zip")).into_iter().map(|(name, bytes)| (format!("in/{name}"), bytes)).collect();
+    let both = entries(&desk.path("a.zip")).into_iter().chain(inside).collect();
+    fs::write(desk.path("both.zip"), pack(&both).unwrap()).unwrap();
+    // The one at the top is meant; what else there is was added to it.
+    assert!(desk.run(&["verify", "both.zip"], 1).1.contains("was added"));
+}
+
 #[test]
 fn an_archive_is_the_same_bytes_again_and_verifies_as_identical() {
     let desk = archived("quick.yaml", &["--want", "stiffness.iso6336,ste.summary.largest_pressure"]);

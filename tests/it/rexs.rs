@@ -87,6 +87,24 @@ fn refused(xml: &str) -> String {
     rexs::geometry(xml, None).unwrap_err().to_string()
 }
 
+/// Marks that a merge left, in a file of every form.
+#[test]
+fn a_conflict_of_a_merge_is_named() {
+    let text = file();
+    let line = text.lines().position(|line| line.contains("<attribute ")).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let both =
+        [&lines[..line], &["<<<<<<< HEAD", lines[line], "=======", lines[line], ">>>>>>> f"], &lines[line + 1..]];
+    let place = format!("{}:1: a merge left both versions from line {} to {}; keep one", line + 1, line + 1, line + 5);
+    let said = refused(&both.concat().join("\n"));
+    assert!(said.starts_with(&place), "{said}");
+    let said = refused("{\n<<<<<<< HEAD\n\"model\": 1\n=======\n\"model\": 2\n>>>>>>> f\n}\n");
+    assert!(said.starts_with("2:1: a merge left both versions from line 2 to 6"), "{said}");
+    // A line of a comment is none.
+    let comment = text.replacen("?>", "?>\n<!--\n=======\n-->", 1);
+    assert!(comment.contains("=======") && rexs::geometry(&comment, None).is_ok());
+}
+
 #[test]
 fn a_pair_comes_out_as_a_valid_study() {
     let desk = Desk::with("quick.yaml");

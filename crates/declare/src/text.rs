@@ -31,9 +31,10 @@ pub fn number(character: char) -> String {
 }
 
 /// Characters that a reader cannot see, or cannot tell from a space: of Unicode 16 the control characters (`Cc`), the format
-/// characters (`Cf`, with those of `Bidi_Control`), `Default_Ignorable_Code_Point`, and `White_Space` but for U+0020; and U+2800, a
+/// characters (`Cf`, with those of `Bidi_Control`), `Default_Ignorable_Code_Point`, and `White_Space` but for U+0020; those that no
+/// font has a shape for, of private use (`Co`) and `Noncharacter_Code_Point`; U+FFFC, which stands for an object; and U+2800, a
 /// pattern of no dots. In order.
-const INVISIBLE: [(char, char); 30] = [
+const INVISIBLE: [(char, char); 47] = [
     ('\0', '\u{1f}'),
     ('\u{7f}', '\u{a0}'),
     ('\u{ad}', '\u{ad}'),
@@ -54,16 +55,33 @@ const INVISIBLE: [(char, char); 30] = [
     ('\u{2800}', '\u{2800}'),
     ('\u{3000}', '\u{3000}'),
     ('\u{3164}', '\u{3164}'),
+    ('\u{e000}', '\u{f8ff}'),
+    ('\u{fdd0}', '\u{fdef}'),
     ('\u{fe00}', '\u{fe0f}'),
     ('\u{feff}', '\u{feff}'),
     ('\u{ffa0}', '\u{ffa0}'),
-    ('\u{fff0}', '\u{fffb}'),
+    ('\u{fff0}', '\u{fffc}'),
+    ('\u{fffe}', '\u{ffff}'),
     ('\u{110bd}', '\u{110bd}'),
     ('\u{110cd}', '\u{110cd}'),
     ('\u{13430}', '\u{1343f}'),
     ('\u{1bca0}', '\u{1bca3}'),
     ('\u{1d173}', '\u{1d17a}'),
+    ('\u{1fffe}', '\u{1ffff}'),
+    ('\u{2fffe}', '\u{2ffff}'),
+    ('\u{3fffe}', '\u{3ffff}'),
+    ('\u{4fffe}', '\u{4ffff}'),
+    ('\u{5fffe}', '\u{5ffff}'),
+    ('\u{6fffe}', '\u{6ffff}'),
+    ('\u{7fffe}', '\u{7ffff}'),
+    ('\u{8fffe}', '\u{8ffff}'),
+    ('\u{9fffe}', '\u{9ffff}'),
+    ('\u{afffe}', '\u{affff}'),
+    ('\u{bfffe}', '\u{bffff}'),
+    ('\u{cfffe}', '\u{cffff}'),
+    ('\u{dfffe}', '\u{dffff}'),
     ('\u{e0000}', '\u{e0fff}'),
+    ('\u{efffe}', '\u{10ffff}'),
 ];
 
 /// Whether a message shows a character by its number, since nobody would see it.
@@ -169,14 +187,15 @@ mod tests {
         }
         let hidden = "\u{ad}\u{34f}\u{61c}\u{115f}\u{1160}\u{17b4}\u{180b}\u{180e}\u{200b}\u{200c}\u{200d}\u{200e}\u{200f}\u{202a}\
                       \u{202e}\u{2060}\u{2064}\u{2066}\u{2069}\u{206f}\u{2800}\u{3164}\u{fe00}\u{fe0f}\u{feff}\u{ffa0}\u{fff9}\u{fffb}\
-                      \u{110bd}\u{13430}\u{1bca0}\u{1d173}\u{1d17a}\u{e0001}\u{e0020}\u{e007f}\u{e0100}\u{e01ef}\u{e0fff}";
+                      \u{110bd}\u{13430}\u{1bca0}\u{1d173}\u{1d17a}\u{e0001}\u{e0020}\u{e007f}\u{e0100}\u{e01ef}\u{e0fff}\
+                      \u{e000}\u{f8ff}\u{fdd0}\u{fdef}\u{fffc}\u{1fffe}\u{dffff}\u{efffe}\u{f0000}\u{10fffd}\u{10ffff}";
         for character in hidden.chars() {
             assert_eq!(visible(&format!("te{character}eth")), format!("te{}eth", code_point(character)));
         }
         for text in [
             "µm\t→ 1\n2",
             "25\u{202f}N·m",
-            "é\u{301} \u{1f600} 中 \u{ac}\u{ae}\u{2010}\u{2027}\u{2070}\u{fffc}\u{1d17b}\u{e1000}",
+            "é\u{301} \u{1f600} 中 \u{ac}\u{ae}\u{2010}\u{2027}\u{2070}\u{f900}\u{fdcf}\u{fdf0}\u{fffd}\u{1d17b}\u{e1000}",
         ] {
             assert_eq!(visible(text), text);
         }

@@ -6,7 +6,7 @@ use std::ffi::OsStr;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Output};
 
 /// Variables that bind git to one repository: the output of `git rev-parse --local-env-vars` (git 2.47), and one of earlier
 /// versions. Hooks, aliases and `git rebase --exec` set them; a program that asks about another folder must clear them
@@ -100,8 +100,25 @@ pub fn ask<S: AsRef<OsStr>>(folder: &Path, words: &[S]) -> Result<Vec<u8>, Strin
 /// # Errors
 /// The message of git with its remedy, on one line.
 pub fn answer<S: AsRef<OsStr>>(command: &mut Command, words: &[S]) -> Result<Vec<u8>, String> {
-    let output = command.args(words).output().map_err(|error| format!("`git` cannot be started: {error}"))?;
+    let output = output(command, words)?;
     if output.status.success() { Ok(output.stdout) } else { Err(reason(&String::from_utf8_lossy(&output.stderr))) }
+}
+
+/// Whether a call that decides something says yes: it ends with 0 then, and with 1 for no.
+///
+/// # Errors
+/// As [`answer`], for any other ending.
+pub fn decide<S: AsRef<OsStr>>(command: &mut Command, words: &[S]) -> Result<bool, String> {
+    let output = output(command, words)?;
+    match output.status.code() {
+        Some(0) => Ok(true),
+        Some(1) => Ok(false),
+        _ => Err(reason(&String::from_utf8_lossy(&output.stderr))),
+    }
+}
+
+fn output<S: AsRef<OsStr>>(command: &mut Command, words: &[S]) -> Result<Output, String> {
+    command.args(words).output().map_err(|error| format!("`git` cannot be started: {error}"))
 }
 
 /// The message of git on one line, from its `fatal:` on: traces and warnings may stand before it.

@@ -4,6 +4,7 @@
 //! `read_dir` are easily flattened; `clippy.toml` forbids them. Must not know: what the files are.
 
 use std::fs::{self, FileType, Metadata};
+use std::hash::Hash;
 use std::io::{self, ErrorKind};
 use std::path::{Component, Path, PathBuf};
 
@@ -57,6 +58,26 @@ pub fn is_file(path: &Path) -> io::Result<bool> {
 /// As [`metadata`].
 pub fn is_folder(path: &Path) -> io::Result<bool> {
     Ok(metadata(path)?.is_some_and(|found| found.is_dir()))
+}
+
+/// A value that all paths to one file have in common, through links of both kinds, and no path to another; none where there is
+/// nothing.
+///
+/// # Errors
+/// As [`metadata`].
+#[cfg(unix)]
+pub fn identity(path: &Path) -> io::Result<Option<impl Eq + Hash + use<>>> {
+    use std::os::unix::fs::MetadataExt;
+    Ok(metadata(path)?.map(|found| (found.dev(), found.ino())))
+}
+
+/// A value that all paths to one file have in common through symbolic links, and no path to another; none where there is nothing.
+///
+/// # Errors
+/// As [`metadata`].
+#[cfg(not(unix))]
+pub fn identity(path: &Path) -> io::Result<Option<impl Eq + Hash + use<>>> {
+    real_path(path)
 }
 
 /// The path without links and `..`; none where there is nothing.

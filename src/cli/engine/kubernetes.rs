@@ -2,12 +2,12 @@
 //!
 //! One job for each level; the second is applied when the first is done. Must not know: any cluster.
 
-use std::fs;
 use std::path::Path;
 
 use super::super::Ending;
 use super::super::progress::out;
 use studygraph::runner::shard::ShardPlan;
+use studygraph::store::file::{self, Durability};
 
 /// Writes `job.yaml` beside the plan.
 ///
@@ -49,7 +49,7 @@ pub fn write(plan: &ShardPlan, folder: &Path, image: &str, quiet: bool) -> Resul
             image = serde_json::Value::from(image),
         );
     }
-    fs::write(&path, text).map_err(|error| Ending::Usage(format!("cannot write `{}`: {error}", path.display())))?;
+    file::write(&path, text.as_bytes(), Durability::Lazy).map_err(|error| Ending::Usage(error.to_string()))?;
     if !quiet {
         out(&format!("wrote {}\n", path.display()));
     }

@@ -28,6 +28,14 @@ const PATIENCE: Field = Field::integer(
 )
 .default("600");
 
+const ANSWER_TIME: Field = Field::integer(
+    "answer_time",
+    1,
+    3600,
+    "Seconds after which a command of the engine that does not end is given up, and counts as not answered.",
+)
+.default("120");
+
 pub(super) static SLURM: &[Field] = &[
     PROGRAM,
     Field::new("partition", Shape::Text, "Partition of the jobs.").optional(),
@@ -48,6 +56,7 @@ pub(super) static SLURM: &[Field] = &[
     ATTEMPTS,
     ASK_EVERY,
     PATIENCE,
+    ANSWER_TIME,
 ];
 
 pub(super) static PARALLEL: &[Field] = &[

@@ -4,7 +4,8 @@
 //! itself says who is at work, whoever submitted it. Must not know: what a shard computes.
 
 use std::collections::BTreeSet;
-use std::io::{ErrorKind, Write};
+use std::fs::File;
+use std::io::{self, ErrorKind, Read, Seek, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -27,10 +28,15 @@ const FIRST_PAUSE: Duration = Duration::from_secs(1);
 const LONGEST_PAUSE: Duration = Duration::from_mins(1);
 /// How often a pause looks whether somebody asked to stop.
 const LOOK: Duration = Duration::from_millis(100);
+/// How often it is looked whether a command has ended.
+const ENDED: Duration = Duration::from_millis(10);
+/// What is said of a command that does not end.
+const NO_ANSWER: &str = "no answer in";
 /// Characters of an answer that is shown.
 const SHOWN: usize = 200;
 /// What sbatch says where it, or the site's limit on jobs, refuses for the moment. All else is wrong with the job.
-const PASSING: [&str; 12] = [
+const PASSING: [&str; 13] = [
+    NO_ANSWER,
     "timed out",
     "timeout",
     "unable to contact",
@@ -85,7 +91,7 @@ impl<'a> Slurm<'a> {
         made(&job.folder.join("logs"))?;
         let program = program(profile)?;
         let mut slurm = Self { job, profile, array_size: ARRAY_SIZE, program, stop, queued: BTreeSet::new() };
-        let said = slurm.patiently(|_| ask("scontrol", &["show".into(), "config".into()], None))?;
+        let said = slurm.patiently(|slurm| slurm.ask("scontrol", &["show".into(), "config".into()], None))?;
         let site =
             said.lines().find_map(|line| line.strip_prefix("MaxArraySize")?.split('=').nth(1)?.trim().parse().ok());
         slurm.array_size = maybe_number(profile, "array_size").or(site).unwrap_or(ARRAY_SIZE).max(2);
@@ -147,7 +153,7 @@ impl<'a> Slurm<'a> {
             {
                 return Ok(found.job.unwrap_or_default());
             }
-            let said = match ask("sbatch", &all, Some(&script)) {
+            let said = match slurm.ask("sbatch", &all, Some(&script)) {
                 // What is wrong with the job is so every time.
                 Err(Unanswered::Passing(problem)) if !is_passing(&problem) => {
                     return Err(Unanswered::Final(Ending::Usage(problem)));
@@ -201,18 +207,30 @@ impl<'a> Slurm<'a> {
     /// # Errors
     /// When Slurm refuses; when all is in the queue already.
     pub(super) fn chain(&mut self, places: &Places) -> Result<(), Ending> {
-        let chained = self.chained(places);
-        chained.map_err(|ending| self.job.given_up(ending, &self.in_queue(" without a merge")))
+        let job = self.job;
+        let queue = self.queue().map_err(|ending| job.given_up(ending, ""))?;
+        if let Some(merge) = queue.iter().find(|found| found.name == MERGE) {
+            return Err(Ending::Usage(format!("{}: {}", job.plan.study, self.with_merge(merge))));
+        }
+        let chained = self.chained(places, &queue);
+        chained.map_err(|ending| job.given_up(ending, &self.in_queue(" without a merge")))
     }
 
-    fn chained(&mut self, places: &Places) -> Result<(), Ending> {
-        let queue = self.queue()?;
+    /// That a chain is in the queue to its end.
+    fn with_merge(&self, merge: &Element) -> String {
+        let number = merge.job.as_deref().map(|job| format!(", job {job},")).unwrap_or_default();
+        let (shards, is, go, them) = match &self.queued {
+            none if none.is_empty() => (String::new(), "is", "goes", "it"),
+            some => (format!("shards {} and ", ranges(some.iter().copied())), "are", "go", "them"),
+        };
+        let prefix = self.prefix();
+        format!(
+            "{shards}the merge{number} {is} in the queue already and {go} on (`scancel --me --name={prefix}…` ends {them})"
+        )
+    }
+
+    fn chained(&mut self, places: &Places, queue: &[Element]) -> Result<(), Ending> {
         let live: BTreeSet<usize> = queue.iter().filter_map(Element::shard).collect();
-        if let Some(merge) = queue.iter().find(|found| found.name == MERGE) {
-            let number = merge.job.as_deref().map(|job| format!(", job {job},")).unwrap_or_default();
-            let shards = if live.is_empty() { String::new() } else { format!("shards {} and ", ranges(live)) };
-            return Err(Ending::Usage(format!("{shards}the merge{number} are in the queue already")));
-        }
         if let Some(nameless) = queue.iter().find(|found| found.shard().is_some() && found.job.is_none()) {
             let shard = nameless.shard().unwrap_or_default();
             return Err(Ending::Usage(format!(
@@ -268,7 +286,7 @@ impl<'a> Slurm<'a> {
 
     fn queue_once(&self) -> Result<Vec<Element>, Unanswered> {
         let words = ["--noheader", "--array", "--me", "--format=%j|%K|%F"].map(str::to_owned);
-        let said = ask("squeue", &words, None)?;
+        let said = self.ask("squeue", &words, None)?;
         let prefix = self.prefix();
         let element = |line: &str| {
             let mut fields = line.trim().split('|');
@@ -279,6 +297,56 @@ impl<'a> Slurm<'a> {
         Ok(said.lines().filter_map(element).collect())
     }
 
+    /// What a command of Slurm says.
+    fn ask(&self, command: &str, words: &[String], input: Option<&str>) -> Result<String, Unanswered> {
+        let wrong = |problem: String| format!("`{command}`: {problem}");
+        let passing = |error: io::Error| Unanswered::Passing(wrong(error.to_string()));
+        // Files and not pipes: what the command has started may have the other end of a pipe for ever.
+        let (mut said, mut problems) = (tempfile::tempfile().map_err(passing)?, tempfile::tempfile().map_err(passing)?);
+        let stdin = if input.is_some() { Stdio::piped() } else { Stdio::null() };
+        let mut called = Command::new(command);
+        called.args(words).stdin(stdin).stdout(said.try_clone().map_err(passing)?);
+        let child = called.stderr(problems.try_clone().map_err(passing)?).spawn();
+        let mut child = child.map_err(|error| match error.kind() {
+            ErrorKind::NotFound | ErrorKind::PermissionDenied => {
+                Unanswered::Final(Ending::Usage(wrong(format!("{error}; is Slurm on this machine?"))))
+            }
+            // This machine has no process to give at the moment.
+            _ => passing(error),
+        })?;
+        if let (Some(input), Some(mut stdin)) = (input, child.stdin.take()) {
+            // Whoever does not read it says why when it ends.
+            let _ = stdin.write_all(input.as_bytes());
+        }
+        let limit = Duration::from_secs(number(self.profile, "answer_time") as u64);
+        let began = Instant::now();
+        let status = loop {
+            if let Some(status) = child.try_wait().map_err(passing)? {
+                break status;
+            }
+            // A job that is being submitted is waited for, since it would be in the queue without a number.
+            let is_stopped = input.is_none() && self.stop.load(Ordering::Relaxed);
+            if is_stopped || began.elapsed() >= limit {
+                // What has ended in this moment cannot be ended.
+                let _ = child.kill();
+                let _ = child.wait();
+                return Err(if is_stopped {
+                    Unanswered::Final(Ending::Stopped)
+                } else {
+                    Unanswered::Passing(wrong(format!("{NO_ANSWER} {} s", limit.as_secs())))
+                });
+            }
+            std::thread::sleep(ENDED);
+        };
+        if status.success() {
+            return written(&mut said).map_err(passing);
+        }
+        let said = written(&mut problems).map_err(passing)?;
+        let lines: Vec<&str> = said.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+        let said = if lines.is_empty() { status.to_string() } else { lines.join("; ") };
+        Err(Unanswered::Passing(wrong(said)))
+    }
+
     /// Which shards are in the queue, and what ends them.
     fn in_queue(&self, how: &str) -> String {
         if self.queued.is_empty() {
@@ -287,6 +355,14 @@ impl<'a> Slurm<'a> {
         let (shards, prefix) = (ranges(self.queued.iter().copied()), self.prefix());
         format!("shards {shards} are in the queue{how} and go on (`scancel --me --name={prefix}…` ends them); ")
     }
+}
+
+/// All that a command wrote into a file.
+fn written(file: &mut File) -> io::Result<String> {
+    let mut bytes = Vec::new();
+    file.rewind()?;
+    file.read_to_end(&mut bytes)?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 /// The number of the job that sbatch has taken: the last line that is `number` or `number;cluster`. Sites print more before.
@@ -320,32 +396,6 @@ impl Starter for Slurm<'_> {
     fn leave(&mut self) -> String {
         self.in_queue("")
     }
-}
-
-/// What a command of Slurm says.
-fn ask(command: &str, words: &[String], input: Option<&str>) -> Result<String, Unanswered> {
-    let wrong = |problem: String| format!("`{command}`: {problem}");
-    let stdin = if input.is_some() { Stdio::piped() } else { Stdio::null() };
-    let child = Command::new(command).args(words).stdin(stdin).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
-    let mut child = child.map_err(|error| match error.kind() {
-        ErrorKind::NotFound | ErrorKind::PermissionDenied => {
-            Unanswered::Final(Ending::Usage(wrong(format!("{error}; is Slurm on this machine?"))))
-        }
-        // This machine has no process to give at the moment.
-        _ => Unanswered::Passing(wrong(error.to_string())),
-    })?;
-    if let (Some(input), Some(mut stdin)) = (input, child.stdin.take()) {
-        // Whoever does not read it says why when it ends.
-        let _ = stdin.write_all(input.as_bytes());
-    }
-    let output = child.wait_with_output().map_err(|error| Unanswered::Passing(wrong(error.to_string())))?;
-    if output.status.success() {
-        return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
-    }
-    let said = String::from_utf8_lossy(&output.stderr);
-    let lines: Vec<&str> = said.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
-    let said = if lines.is_empty() { output.status.to_string() } else { lines.join("; ") };
-    Err(Unanswered::Passing(wrong(said)))
 }
 
 #[cfg(test)]

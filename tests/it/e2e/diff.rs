@@ -380,3 +380,14 @@ fn a_stage_with_another_name_is_told_as_that() {
         (&"added".into(), &"removed".into())
     );
 }
+
+/// A study of which git cannot say whether it is kept out on purpose is not compared as if it were not.
+#[test]
+fn an_error_of_git_is_not_taken_for_a_study_that_is_kept() {
+    let desk = committed();
+    edit(&desk, "study: quick", "study: other");
+    desk.run(&["run", "--quiet", "quick.yaml"], 0);
+    fs::write(desk.path(".git/index"), "damaged").unwrap();
+    let (_, error) = desk.run(&["diff"], 1);
+    assert!(error.contains("it is not known whether git keeps `") && error.contains("index"), "{error}");
+}

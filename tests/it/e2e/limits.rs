@@ -148,6 +148,60 @@ fn a_limit_on_the_size_of_files_is_reported() {
     }
 }
 
+/// The fault of this disk is none of the archive; and a file that could not be written to its end does not stay.
+#[cfg(unix)]
+#[test]
+fn a_limit_on_the_size_of_files_is_no_fault_of_what_is_read() {
+    let desk = Desk::with("quick.yaml");
+    desk.run(&["run", "quick.yaml", "--quiet"], 0);
+    desk.run(&["archive", "quick.yaml", "-o", "a.zip"], 0);
+    let limited = |words: &str| {
+        let line = format!("ulimit -f 1; \"$0\" {words}");
+        let mut command = Command::new("sh");
+        command.args(["-c", &line, env!("CARGO_BIN_EXE_gearstudy")]).current_dir(desk.path(""));
+        let output = command.env_remove("GEARSTUDY_CACHE").output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{words}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let said = limited("verify a.zip");
+    assert!(said.contains("cannot write") && said.contains("too large"), "{said}");
+    assert!(!said.contains("damaged") && !said.contains("`a.zip`"), "{said}");
+    let said = limited("new n.yaml");
+    assert!(said.contains("cannot write n.yaml") && !desk.path("n.yaml").exists(), "{said}");
+    desk.run(&["new", "n.yaml"], 0);
+}
+
+/// Nobody reads the answer to its end, or it cannot be written: temporary folders go, and the code is that of the work.
+#[cfg(unix)]
+#[test]
+fn an_answer_that_is_not_read_leaves_nothing_behind() {
+    let desk = Desk::with("quick.yaml");
+    desk.run(&["run", "quick.yaml", "--quiet"], 0);
+    desk.run(&["archive", "quick.yaml", "-o", "a.zip"], 0);
+    fs::remove_file(desk.path("results/quick/quick.h5")).unwrap();
+    let temporary = tempfile::tempdir().unwrap();
+    for (words, expected) in [
+        ("verify a.zip --jobs 1 | true", 0),
+        ("verify a.zip --json > /dev/full", 1),
+        ("status quick.yaml | true", 0),
+        ("status --check quick.yaml | true", 4),
+    ] {
+        let line = format!("{{ \"$0\" {}; echo $? > code; }} {}", split(words).0, split(words).1);
+        let mut command = Command::new("sh");
+        command.args(["-c", &line, env!("CARGO_BIN_EXE_gearstudy")]).current_dir(desk.path(""));
+        let output = command.env("TMPDIR", temporary.path()).env_remove("GEARSTUDY_CACHE").output().unwrap();
+        let code = fs::read_to_string(desk.path("code")).unwrap();
+        assert_eq!(code.trim(), expected.to_string(), "{words}: {}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(fs::read_dir(temporary.path()).unwrap().count(), 0, "{words}");
+    }
+}
+
+/// A command and what becomes of its answer.
+#[cfg(unix)]
+fn split(line: &str) -> (&str, &str) {
+    line.split_at(line.find(['|', '>']).unwrap())
+}
+
 #[test]
 fn a_query_has_a_time_limit() {
     let desk = Desk::with("quick.yaml");

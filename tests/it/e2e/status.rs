@@ -113,6 +113,12 @@ fn a_file_that_is_gone_is_missing_unless_the_cache_has_it() {
         assert!(out.contains(told), "{file}: {out}");
         let (_, error) = desk.run(&["status", "--check", "quick.yaml"], 4);
         assert!(file == "files.json" || error.contains(&format!("results/quick/{file}")), "{error}");
+        let (_, error) = desk.run(&["report", "--check", "quick.yaml"], 4);
+        let named = if file == "files.json" { page } else { file };
+        assert!(error.contains(named) && error.contains("first: gearstudy run quick.yaml"), "{error}");
+        let value: Value =
+            serde_json::from_str(&desk.run(&["report", "--check", "--json", "quick.yaml"], 4).0).unwrap();
+        assert!(value[0]["stale"].as_str().unwrap().contains(named), "{value:#}");
         desk.run(&["run", "--quiet", "quick.yaml"], 0);
         assert_eq!(desk.run(&["status", "--check", "quick.yaml"], 0).0.lines().next(), Some("quick: up to date"));
     }
@@ -120,7 +126,10 @@ fn a_file_that_is_gone_is_missing_unless_the_cache_has_it() {
     // `table` and `query` have it from the cache.
     desk.run(&["status", "--check", "quick.yaml"], 0);
     desk.run(&["table", "quick.yaml", "ste.curve"], 0);
+    desk.run(&["report", "--check", "quick.yaml"], 0);
     fs::rename(&cache, &aside).unwrap();
+    let (_, error) = desk.run(&["report", "--check", "quick.yaml"], 4);
+    assert!(error.contains("`results/quick/ste.curve.parquet` is missing"), "{error}");
     let (out, error) = desk.run(&["status", "--check", "quick.yaml"], 4);
     assert!(out.contains("1 file not here (ste.curve.parquet)"), "{out}");
     assert!(error.contains("missing; `gearstudy run` writes it anew:\n  results/quick/ste.curve.parquet"), "{error}");

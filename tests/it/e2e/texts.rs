@@ -94,7 +94,8 @@ fn a_text_with_a_character_that_some_file_cannot_hold_is_refused_in_every_field(
 fn a_message_shows_what_cannot_be_seen_by_its_number() {
     let hidden = "\u{a0}\u{ad}\u{34f}\u{61c}\u{115f}\u{1680}\u{17b4}\u{180e}\u{2000}\u{2009}\u{200a}\u{200b}\u{200c}\u{200d}\u{200e}\
                   \u{200f}\u{2028}\u{2029}\u{202a}\u{202e}\u{202f}\u{205f}\u{2060}\u{2064}\u{2066}\u{2069}\u{206f}\u{2800}\u{3000}\
-                  \u{3164}\u{fe00}\u{fe0f}\u{feff}\u{ffa0}\u{fff9}\u{110bd}\u{13430}\u{1bca0}\u{1d173}\u{e0001}\u{e0041}\u{e007f}\u{e0100}";
+                  \u{3164}\u{fe00}\u{fe0f}\u{feff}\u{ffa0}\u{fff9}\u{110bd}\u{13430}\u{1bca0}\u{1d173}\u{e0001}\u{e0041}\u{e007f}\u{e0100}\
+                  \u{e000}\u{f8ff}\u{fdd0}\u{fffc}\u{f0000}\u{10fffd}";
     let study = STUDY.replace(TEXT, "fine");
     for character in hidden.chars() {
         let number = format!("U+{:04X}", u32::from(character));

@@ -31,7 +31,7 @@ fn results_that_cannot_be_read_are_not_absent() {
     assert!(out.is_empty() && error.contains("quick/manifest.json"), "{out}{error}");
     let (_, error) = desk.run(&["diff", "results", "results"], 1);
     assert!(error.contains("`quick/manifest.json` of results cannot be read: "), "{error}");
-    let (_, error) = desk.run(&["query", "select count(*) from quick.ste.summary"], 2);
+    let (_, error) = desk.run(&["query", "select count(*) from quick.ste.summary"], 1);
     assert!(error.contains("`quick/manifest.json` of results cannot be read: "), "{error}");
     // Another study is answered for, and a list says which one is missing from it.
     let (out, _) = desk.run(&["query", "--format", "csv", "select count(*) as n from other.ste.summary"], 0);
@@ -47,6 +47,33 @@ fn results_that_cannot_be_read_are_not_absent() {
     fs::remove_file(desk.path("results/quick")).unwrap();
     fs::rename(desk.path("quick.aside"), desk.path("results/quick")).unwrap();
     assert_eq!(desk.run(&["status", "quick.yaml"], 0).0, "quick: up to date\n");
+}
+
+/// What a check of the cache cannot read or remove is not gone from it.
+#[cfg(unix)]
+#[test]
+fn entries_of_the_cache_that_stay_are_not_said_to_be_gone() {
+    let desk = Desk::with("quick.yaml");
+    desk.run(&["run", "--quiet", "quick.yaml"], 0);
+    let entries = desk.path(".gearstudy/cache/entries");
+    let folders: Vec<_> = fs::read_dir(&entries).unwrap().map(|folder| folder.unwrap().path()).collect();
+    // Where links lead in a circle, also the owner of all files cannot read.
+    let aside = desk.path("aside");
+    fs::rename(&folders[0], &aside).unwrap();
+    fs::create_dir(&folders[0]).unwrap();
+    let entry = fs::read_dir(&aside).unwrap().next().unwrap().unwrap().file_name();
+    std::os::unix::fs::symlink(folders[0].join(&entry), folders[0].join(&entry)).unwrap();
+    let (_, error) = desk.run(&["status", "--check", "quick.yaml"], 1);
+    assert!(error.contains("cannot read `.gearstudy/cache/entries/") && !error.contains("gone from it"), "{error}");
+    fs::remove_dir_all(&folders[0]).unwrap();
+    fs::rename(&aside, &folders[0]).unwrap();
+    // A damaged one is gone, and said to be so.
+    let path = folders[0].join(&entry);
+    let mut bytes = fs::read(&path).unwrap();
+    *bytes.last_mut().unwrap() ^= 1;
+    fs::write(&path, bytes).unwrap();
+    let (_, error) = desk.run(&["status", "--check", "quick.yaml"], 4);
+    assert!(error.contains("damaged in the cache, and gone from it now") && !path.exists(), "{error}");
 }
 
 #[cfg(unix)]

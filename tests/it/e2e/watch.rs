@@ -186,6 +186,22 @@ fn nobody_else_is_answered_and_nothing_else_is_sent() {
     watching.after(0);
     // As a browser asks for a page from elsewhere that claims to be here.
     assert_eq!(watching.get("/", "evil.example").0, 403);
+    // RFC 9112, section 3.2: one host, no less and no more.
+    let own = format!("Host: 127.0.0.1:{}\r\n", watching.port);
+    for (version, hosts, code) in [
+        ("1.1", own.repeat(2), 400),
+        ("1.1", format!("{own}host: evil.example\r\n"), 400),
+        ("1.0", own.repeat(2), 400),
+        ("1.1", String::new(), 400),
+        ("1.0", String::new(), 403),
+        ("1.1", own.clone(), 200),
+    ] {
+        let mut stream = watching.connect();
+        write!(stream, "GET / HTTP/{version}\r\n{hosts}\r\n").unwrap();
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).unwrap();
+        assert!(answer.starts_with(&format!("HTTP/1.1 {code} ")), "{version} {hosts:?}: {:?}", answer.lines().next());
+    }
     for path in ["/../quick.yaml", "/..%2fquick.yaml", "//etc/passwd", "/figures/../../../quick.yaml", "/figures"] {
         assert_eq!(watching.ask(path).0, 404, "{path}");
     }

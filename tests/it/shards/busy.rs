@@ -8,12 +8,14 @@ use std::process::Command;
 use super::{assert_as_local, swept};
 use crate::desk::Desk;
 
-/// `FAIL_sbatch` and so on: the calls that fail, by their numbers; `TAKEN`: sbatch takes the job before it fails; `WRONG`: it
+/// `FAIL_sbatch` and so on: the calls that fail, by their numbers; `HANG_sbatch`: those that never end; `TAKEN`: sbatch takes the job before it fails; `WRONG`: it
 /// says that the job is wrong; `BANNER`: it prints one.
 const STAND_IN: &str = r#"#!/bin/sh
 called=$(basename "$0"); cd "$QUEUE" || exit 9
 n=$(($(cat $called.count 2>/dev/null || echo 0) + 1)); echo $n > $called.count; echo "$@" >> $called.log
 eval fails=\"\$FAIL_$called\"
+eval hangs=\"\$HANG_$called\"
+case " $hangs " in *" $n "*) sleep 120;; esac
 fail() {
     case " $fails " in *" $n "*|" all ")
         if [ -n "$WRONG" ]; then echo "$called: error: invalid account" >&2
@@ -123,6 +125,27 @@ fn a_chain_that_was_begun_is_completed_by_the_same_command() {
     );
     let (code, said) = site.run(&site_yaml(true), &[hold]);
     assert!(code == Some(1) && said.contains("shards 0-3 and the merge, job 103, are in the queue already"), "{said}");
+    assert!(!said.contains("without a merge") && !said.contains("the same command goes on"), "{said}");
+    // The merge alone.
+    let merge = site.lines("queue").into_iter().filter(|line| line.contains("-merge|")).collect::<String>();
+    fs::write(site.0.path("queue/queue"), merge + "\n").unwrap();
+    let (code, said) = site.run(&site_yaml(true), &[hold]);
+    assert!(code == Some(1) && said.contains("swept: the merge, job 103, is in the queue already"), "{said}");
+}
+
+/// A call that never ends is given up, and made again as one that failed.
+#[test]
+fn a_scheduler_that_hangs_is_asked_again() {
+    let site = Site::new();
+    fs::write(site.0.path("short.yaml"), "ask_every: 1\npatience: 20\nanswer_time: 2\n").unwrap();
+    let began = std::time::Instant::now();
+    let set = [("HANG_sbatch", "1"), ("HANG_squeue", "1"), ("HANG_scontrol", "1")];
+    let (code, said) = site.run(&["--profile", "short.yaml", "--detach"], &[&set[..], &[("HOLD", "1")]].concat());
+    assert!(code == Some(0) && said.contains("job 103 for the merge"), "{said}");
+    for command in ["scontrol", "squeue", "sbatch"] {
+        assert!(said.contains(&format!("`{command}`: no answer in 2 s; asking again")), "{command}: {said}");
+    }
+    assert!(began.elapsed() < std::time::Duration::from_mins(1));
 }
 
 #[test]

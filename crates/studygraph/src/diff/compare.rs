@@ -9,7 +9,7 @@ use super::manifests::{Read, read};
 use super::model::{Comparison, Damage, Difference, Flip, StageDiff, StudyDiff, TableDiff};
 use super::renamed::ManifestPair;
 use super::{curves, renamed, table, verdict, why};
-use crate::history::side::{Got, Odd, Side};
+use crate::history::side::{Got, Odd, Side, is_cached};
 use crate::store::cache::Cache;
 use crate::store::manifest::{FORMAT, Manifest, StageRecord, TableRecord};
 use crate::table::schema::{Column, Type};
@@ -24,6 +24,9 @@ const MOST_MEANT: usize = 6;
 /// is told first.
 pub type Curves<'a> = &'a dyn Fn(&str, &str) -> Option<(&'static str, &'static str)>;
 
+/// Decides something of a name; a sentence where the answer is not known.
+pub type Decides<'a, T> = &'a dyn Fn(&T) -> Result<bool, String>;
+
 /// What is asked for besides the two sides.
 #[derive(Default)]
 pub struct Options<'a> {
@@ -34,11 +37,11 @@ pub struct Options<'a> {
     /// Where tables may be found that are not kept with the results.
     pub cache: Option<&'a Cache>,
     /// Whether a study that only the later side has is left out on purpose.
-    pub leaves_out: Option<&'a dyn Fn(&str) -> bool>,
+    pub leaves_out: Option<Decides<'a, str>>,
     /// Which tables hold sampled curves.
     pub curves: Option<Curves<'a>>,
     /// Whether a file of a folder of results is one that is not kept there on purpose.
-    pub not_kept: Option<&'a dyn Fn(&Path) -> bool>,
+    pub not_kept: Option<Decides<'a, Path>>,
 }
 
 /// Compares everything that both sides hold.
@@ -141,9 +144,10 @@ fn damaged(pair: &ManifestPair, before: &Side, after: &Side, options: &Options<'
         }
         if let [first, more @ ..] = &other_run[..] {
             let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
+            let is_cached = other_run.iter().all(|file| is_cached(options.cache, manifest, file));
+            let how = if is_cached { "takes the right ones from the cache" } else { "computes the right ones again" };
             remarks.push(format!(
-                "{}: {}: `{first}`{more} of another run, as `git checkout` leaves them; `gearstudy run` takes the right \
-                 ones from the cache",
+                "{}: {}: `{first}`{more} of another run, as `git checkout` leaves them; `gearstudy run` {how}",
                 pair.name, side.label
             ));
         }
@@ -151,9 +155,14 @@ fn damaged(pair: &ManifestPair, before: &Side, after: &Side, options: &Options<'
         let (Some(path), Some((there, theirs))) = (side.path(), there) else { continue };
         let listed = manifest.files.iter().filter(|listed| theirs.files.iter().any(|other| other.file == listed.file));
         for listed in listed.filter(|listed| !side.has(folder, &listed.file) && other.has(there, &listed.file)) {
-            if !options.not_kept.is_some_and(|not_kept| not_kept(&path.join(folder).join(&listed.file))) {
-                tell(listed.file.clone(), format!("is not there; {} has it", other.label));
-            }
+            let not_kept =
+                options.not_kept.map_or(Ok(false), |not_kept| not_kept(&path.join(folder).join(&listed.file)));
+            let why = match not_kept {
+                Ok(true) => continue,
+                Ok(false) => String::new(),
+                Err(problem) => format!("; {problem}"),
+            };
+            tell(listed.file.clone(), format!("is not there; {} has it{why}", other.label));
         }
     }
     (found, remarks)
@@ -198,10 +207,16 @@ fn pairs(
         let (before, after) = (take(&old, &name, &mut unread), take(&new, &name, &mut unread));
         ManifestPair { name, renamed_from: None, before, after, unread }
     };
-    let (left_out, mut pairs): (Vec<_>, Vec<_>) = names.into_iter().map(pair).partition(|pair| {
+    let (mut left_out, mut pairs) = (Vec::new(), Vec::new());
+    for mut pair in names.into_iter().map(pair) {
         let only_there = pair.before.is_none() && pair.after.is_some() && pair.unread.is_empty();
-        only_there && options.leaves_out.is_some_and(|leaves_out| leaves_out(&pair.name))
-    });
+        let is_left_out = options.leaves_out.filter(|_| only_there).map(|leaves_out| leaves_out(&pair.name));
+        let is_left_out = is_left_out.unwrap_or(Ok(false)).unwrap_or_else(|problem| {
+            pair.unread.push(problem);
+            false
+        });
+        if is_left_out { left_out.push(pair) } else { pairs.push(pair) }
+    }
     let is_asked = |name: &String| options.studies.is_empty() || options.studies.contains(name);
     let left_out = left_out.into_iter().filter(|pair| is_asked(&pair.name));
     let remark = |pair: ManifestPair| format!("{} is left out: git is told to ignore its results", pair.name);

@@ -193,15 +193,18 @@ impl Repository {
     }
 
     /// Whether git is told to leave this file alone, wherever it is.
-    #[must_use]
-    pub fn leaves_out(&self, path: &Path) -> bool {
-        let Ok(inside) = self.inside(path) else { return false };
+    ///
+    /// # Errors
+    /// The reason of git for not answering.
+    pub fn leaves_out(&self, path: &Path) -> Result<bool, String> {
+        let Some(inside) = self.inside(path).ok().filter(|_| !self.is_bare) else { return Ok(false) };
         // It knows no patterns, and refuses to be told so. Nothing that begins with a dot is a magic word of git.
         let mut command = git::command(&self.top);
         command.env_remove("GIT_LITERAL_PATHSPECS");
-        let path = Path::new(".").join(inside);
-        let words = [OsStr::new("check-ignore"), OsStr::new("--quiet"), OsStr::new("--"), path.as_os_str()];
-        git::answer(&mut command, &words).is_ok()
+        let below = Path::new(".").join(inside);
+        let words = [OsStr::new("check-ignore"), OsStr::new("--quiet"), OsStr::new("--"), below.as_os_str()];
+        let cannot = |problem| format!("it is not known whether git keeps `{}`: {problem}", path.display());
+        git::decide(&mut command, &words).map_err(cannot)
     }
 
     /// The files below `folder` at a commit.

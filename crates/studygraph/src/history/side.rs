@@ -9,11 +9,11 @@ use rayon::prelude::*;
 use super::git::{Commit, Files, Repository};
 use crate::presence;
 use crate::store::bundle::Opened;
-use crate::store::cache::Cache;
+use crate::store::cache::{Cache, Lookup};
 use crate::store::error::StoreError;
 use crate::store::file;
 use crate::store::index::{self, Index};
-use crate::store::manifest::{AGAIN, FileRecord, Manifest, StageRecord, TableRecord};
+use crate::store::manifest::{AGAIN, FileRecord, KeyRecord, Manifest, StageRecord, TableRecord};
 use crate::store::parquet;
 use crate::store::results::{FileState, Folder, Known, MANIFEST, held_text, here};
 use crate::table::data::Table;
@@ -327,4 +327,13 @@ pub fn cached(cache: Option<&Cache>, stage: &StageRecord, record: &TableRecord) 
     let parts: Vec<Table> = stage.keys.iter().map(|record| part(record.key)).collect::<Option<_>>()?;
     let table = Table::concatenated(parts).ok()??;
     (table.content_hash().to_string() == record.content).then_some(table)
+}
+
+/// Whether the cache has the tables of all stages that share a file. Files of no stage are drawn from those.
+#[must_use]
+pub fn is_cached(cache: Option<&Cache>, manifest: &Manifest, file: &String) -> bool {
+    let has = |table: &TableRecord| table.file == *file || table.files.contains(file);
+    let mut stages = manifest.stages.iter().filter(|stage| stage.tables.iter().any(has));
+    let found = |record: &KeyRecord| cache.is_some_and(|cache| matches!(cache.look_up(record.key), Lookup::Found(_)));
+    stages.all(|stage| stage.keys.iter().all(found))
 }

@@ -27,7 +27,7 @@ use crate::store::cache::Cache;
 use crate::store::entry::StoredTable;
 use crate::store::error::StoreError;
 use crate::store::facts::Facts;
-use crate::store::manifest::StudyFolder;
+use crate::store::manifest::{Manifest, StudyFolder};
 use crate::store::results::{self, Draw, Folder, Published, Source, Spliced};
 use crate::study::Study;
 use crate::table::data::Table;
@@ -73,11 +73,11 @@ pub fn run(
     draw: Option<Draw<'_>>,
 ) -> Result<(Outcome, Published), RunError> {
     let around = Surroundings { cache, observer, stop, folder, draw };
+    let moved = ownership::check(study, folder)?;
     let publish = |outcome: &mut Outcome| {
-        let manifest = outcome.take_manifest(study);
+        let manifest = Manifest { study_folder: moved.clone().unwrap_or_default(), ..outcome.take_manifest(study) };
         publishing(study, outcome, options, around, |facts, source| folder.publish(manifest, facts, source))
     };
-    ownership::check(study, folder)?;
     for message in &study.warnings().collect::<Vec<_>>() {
         observer.event(&Event::Warning { message });
     }
@@ -109,7 +109,7 @@ pub fn run_part(
     around: Surroundings<'_>,
 ) -> Result<Option<(Outcome, Published)>, RunError> {
     let Surroundings { cache, observer, stop, folder, .. } = around;
-    ownership::check_beside(&part.study)?;
+    ownership::check(&part.study, folder)?;
     let mut outcome = execute(&part.study, cache, &part.options, observer, stop)?;
     let manifest = outcome.take_manifest(&part.study);
     let published = publishing(&part.study, &outcome, options, around, |facts, source| {
@@ -167,7 +167,8 @@ fn publishing<T>(
             StudyFolder::default()
         });
         let mut facts = Facts::collect(&study.program.about, study_folder, options.threads());
-        facts.study_folder.file = ownership::recorded(&study.path, folder.path());
+        let StudyFolder { file, name, .. } = ownership::recorded(study, folder.path());
+        facts.study_folder = StudyFolder { file, name, ..facts.study_folder };
         facts
     };
     // What a run that was stopped had finished is published; only whoever asks meanwhile gets less.

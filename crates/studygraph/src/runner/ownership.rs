@@ -7,6 +7,7 @@ use std::io;
 use std::path::Path;
 
 use crate::presence::{self, without_dots};
+use crate::store::manifest::StudyFolder;
 use crate::store::results::Folder;
 use crate::study::Study;
 use crate::study::identity::{name_of, namesake};
@@ -15,29 +16,32 @@ use declare::error::Diagnostic;
 /// What is to be done about two studies of one name.
 const REMEDY: &str = "change `study:` in one of the two files, or give this run another name with `--name`";
 
+/// The study's file, where the manifest in the folder must record it anew: it has none, or that one is the study no more.
+///
 /// # Errors
 /// When a run of the study would replace the results of another one; when files cannot be read that tell.
-pub fn check(study: &Study, folder: &Folder) -> Result<(), Diagnostic> {
+pub fn check(study: &Study, folder: &Folder) -> Result<Option<StudyFolder>, Diagnostic> {
     check_beside(study)?;
-    let path = folder.path();
-    let Some(recorded) = folder.study_file().map_err(|error| Diagnostic::new(error.to_string()))? else {
-        return Ok(());
+    let own = || Ok(Some(recorded(study, folder.path())));
+    let Some((file, name)) = folder.study_file().map_err(|error| Diagnostic::new(error.to_string()))? else {
+        return own();
     };
-    let cannot = |error: io::Error| Diagnostic::new(presence::unread(&recorded)(error)).help(REMEDY);
-    let is_other = is_other(study, &recorded).map_err(cannot)?;
-    if !is_other {
-        return Ok(());
+    let cannot = |error: io::Error| Diagnostic::new(presence::unread(&file)(error)).help(REMEDY);
+    match owner(study, &file, &name).map_err(cannot)? {
+        Owner::None => own(),
+        Owner::Study => Ok(None),
+        Owner::Other => {
+            // As its user would write it.
+            let here = std::env::current_dir().ok();
+            let shown = here.and_then(|here| file.strip_prefix(here).ok()).unwrap_or(&file).display();
+            let (folder, study) = (folder.path().display(), study.path.display());
+            let message = format!(
+                "the results in `{folder}` are those of {shown}, which is still there and another study than {study}; a run \
+                 would replace them"
+            );
+            Err(Diagnostic::new(message).help(REMEDY))
+        }
     }
-    // As its user would write it.
-    let here = std::env::current_dir().ok();
-    let shown = here.and_then(|here| recorded.strip_prefix(here).ok()).unwrap_or(&recorded);
-    let (folder, other, name) = (path.display(), shown.display(), &study.name);
-    let message = format!(
-        "the results in `{folder}` are those of {other}, which is still there and called `{name}` as {} is; a run would \
-         replace them",
-        study.path.display()
-    );
-    Err(Diagnostic::new(message).help(REMEDY))
 }
 
 /// # Errors
@@ -52,26 +56,43 @@ pub fn check_beside(study: &Study) -> Result<(), Diagnostic> {
     })
 }
 
-/// Whether the recorded file has another study of the same name.
-fn is_other(study: &Study, recorded: &Path) -> io::Result<bool> {
-    if name_of(recorded)?.is_none_or(|name| name != study.name) {
-        return Ok(false);
-    }
-    let own = presence::real_path(&study.path)?;
-    if own.is_some() && own == presence::real_path(recorded)? {
-        return Ok(false);
-    }
-    let theirs = std::fs::read(recorded)?;
-    Ok(match own {
-        Some(own) => !presence::is_file(&own)? || std::fs::read(own)? != theirs,
-        // A text in no file, as Python and shards have it; what is set from outside stands behind it.
-        None => !study.text.as_bytes().starts_with(&theirs),
-    })
+/// Whose results lie in a folder.
+enum Owner {
+    /// Of no study that is still there.
+    None,
+    Study,
+    Other,
 }
 
-/// The study's file as a manifest in `folder` records it; none where it is no file, or on another drive.
+/// By the file that a manifest records, and the name that this file stated.
+fn owner(study: &Study, file: &Path, name: &str) -> io::Result<Owner> {
+    if name_of(file)?.is_none_or(|stated| stated != name) {
+        return Ok(Owner::None);
+    }
+    let own = presence::identity(&study.path)?;
+    if own.is_some() && own == presence::identity(file)? {
+        return Ok(Owner::Study);
+    }
+    let theirs = std::fs::read(file)?;
+    let is_same = if own.is_some() {
+        presence::is_file(&study.path)? && std::fs::read(&study.path)? == theirs
+    } else {
+        // A text in no file, as Python and shards have it; what is set from outside stands behind it.
+        study.text.as_bytes().starts_with(&theirs)
+    };
+    Ok(if is_same { Owner::Study } else { Owner::Other })
+}
+
+/// The study's file and the name that it states, as a manifest in `folder` records them.
 #[must_use]
-pub fn recorded(study: &Path, folder: &Path) -> Option<String> {
+pub fn recorded(study: &Study, folder: &Path) -> StudyFolder {
+    let file = path_from(folder, &study.path);
+    let name = file.as_ref().and_then(|_| name_of(&study.path).ok()?).filter(|name| *name != study.name);
+    StudyFolder { file, name, ..StudyFolder::default() }
+}
+
+/// The path of a study's file from a folder on, with `/`; none where it is no file, or on another drive.
+fn path_from(folder: &Path, study: &Path) -> Option<String> {
     presence::is_file(study).ok().filter(|is_file| *is_file)?;
     let (study, folder) = (std::path::absolute(study).ok()?, std::path::absolute(folder).ok()?);
     let (study, folder) = (without_dots(&study), without_dots(&folder));
@@ -95,12 +116,12 @@ mod tests {
         std::fs::create_dir(folder.path().join("studies")).unwrap();
         std::fs::write(&study, "study: q\n").unwrap();
         let results = folder.path().join("results/q");
-        assert_eq!(recorded(&study, &results).as_deref(), Some("../../studies/q.yaml"));
+        assert_eq!(path_from(&results, &study).as_deref(), Some("../../studies/q.yaml"));
         assert_eq!(
-            recorded(&folder.path().join("studies/./q.yaml"), &results.join("../q")).unwrap(),
+            path_from(&results.join("../q"), &folder.path().join("studies/./q.yaml")).unwrap(),
             "../../studies/q.yaml"
         );
-        assert_eq!(recorded(&folder.path().join("none.yaml"), &results), None);
+        assert_eq!(path_from(&results, &folder.path().join("none.yaml")), None);
         assert_eq!(without_dots(&results.join("../../studies/q.yaml")), study);
     }
 }

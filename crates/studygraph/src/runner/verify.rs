@@ -23,6 +23,7 @@ use crate::store::archive::open::Archive;
 use crate::store::archive::{self, ArchiveError};
 use crate::store::bundle::Opened;
 use crate::store::cache::Cache;
+use crate::store::error::StoreError;
 use crate::store::manifest::{Manifest, TableRecord};
 use crate::store::parquet;
 use crate::store::results::{Draw, MANIFEST};
@@ -121,7 +122,7 @@ pub fn unpack<R: Read + Seek>(
     let bytes = archive.bytes(&name)?;
     // Under our own name, not the archive's.
     let path = work.join("study.yaml");
-    std::fs::write(&path, &bytes).map_err(|error| archive.damaged(&name, &error.to_string()))?;
+    std::fs::write(&path, &bytes).map_err(|error| RunError::from(StoreError::io("write", &path)(error)))?;
     let study = study::load(&path, program).map_err(|mut error| {
         error.path = name.clone().into();
         VerifyError::Study(Box::new(error))

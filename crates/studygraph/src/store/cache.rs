@@ -32,7 +32,7 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, SystemTime};
 
-pub use cleaning::{Remove, Removed};
+pub use cleaning::{Faulty, Left, Remove, Removed};
 
 use self::pack::Small;
 use self::packs::Packs;

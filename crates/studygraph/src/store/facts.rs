@@ -76,7 +76,7 @@ impl StudyFolder {
         let commit = entries().find_map(|entry| entry.strip_prefix("# branch.oid "));
         let is_changed = tracked.len() < files.len() || entries().any(|entry| !entry.starts_with("# "));
         let commit = commit.filter(|commit| *commit != "(initial)").map(str::to_owned);
-        Ok(Self { commit, uncommitted_changes: Some(is_changed), file: None })
+        Ok(Self { commit, uncommitted_changes: Some(is_changed), ..Self::default() })
     }
 }
 

@@ -122,6 +122,18 @@ pub struct StudyFolder {
     /// manifests of earlier versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
+    /// The name that the file states; none where that is the name of the results.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+}
+
+impl StudyFolder {
+    /// Whether these are the results of another file than a manifest says, or of a file that states another name. What is in no
+    /// file replaces none that is recorded.
+    #[must_use]
+    pub fn names_another_file(&self, recorded: &Self) -> bool {
+        self.file.is_some() && (&self.file, &self.name) != (&recorded.file, &recorded.name)
+    }
 }
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]

@@ -90,11 +90,12 @@ impl Folder {
         self.read_manifest().ok().flatten()
     }
 
-    /// The file of the study whose results these are, as the manifest records it; none where it does not, or is damaged.
+    /// The file of the study whose results these are, and the name that it stated, as the manifest records them; none where it
+    /// does not, or is damaged.
     ///
     /// # Errors
     /// When the manifest cannot be read.
-    pub fn study_file(&self) -> Result<Option<PathBuf>, StoreError> {
+    pub fn study_file(&self) -> Result<Option<(PathBuf, String)>, StoreError> {
         /// All else in the manifest is passed over.
         #[derive(serde::Deserialize)]
         struct Recorded {
@@ -109,7 +110,8 @@ impl Folder {
         let Ok(Recorded { study_folder }) = serde_json::from_slice(&bytes) else { return Ok(None) };
         let Some(file) = study_folder.file else { return Ok(None) };
         let folder = std::path::absolute(&self.path).map_err(StoreError::io("find", &self.path))?;
-        Ok(Some(presence::without_dots(&folder.join(file))))
+        let name = study_folder.name.unwrap_or_else(|| self.study.clone());
+        Ok(Some((presence::without_dots(&folder.join(file)), name)))
     }
 
     /// The manifest of the last run; none when there is none.

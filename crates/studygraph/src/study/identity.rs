@@ -2,6 +2,7 @@
 //!
 //! A valid study is not needed: a file that is refused still owns its name. Must not know: where results lie.
 
+use std::collections::HashMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -97,6 +98,27 @@ pub fn files_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
+/// The paths without those that lead to the file of another one, in the same order. Of two, a link gives way to a file.
+/// Paths that cannot be followed all stay.
+#[must_use]
+pub fn one_path_each(paths: impl IntoIterator<Item = PathBuf>) -> Vec<PathBuf> {
+    let is_link = |path: &Path| matches!(presence::link_metadata(path), Ok(Some(found)) if found.is_symlink());
+    let mut kept: Vec<PathBuf> = Vec::new();
+    let mut places = HashMap::new();
+    for path in paths {
+        let place = match presence::identity(&path) {
+            Ok(Some(identity)) => *places.entry(identity).or_insert(kept.len()),
+            _ => kept.len(),
+        };
+        match kept.get_mut(place) {
+            None => kept.push(path),
+            Some(known) if is_link(known) && !is_link(&path) => *known = path,
+            Some(_) => {}
+        }
+    }
+    kept
+}
+
 /// Another file beside `file` in a folder `studies` whose study has this name.
 ///
 /// # Errors
@@ -106,10 +128,10 @@ pub fn namesake(file: &Path, name: &str) -> io::Result<Option<PathBuf>> {
     if folder.file_name().is_none_or(|own| own != FOLDER) {
         return Ok(None);
     }
-    let own = presence::real_path(file)?;
+    let own = presence::identity(file)?;
     for other in files_in(folder)? {
         if name_of(&other).is_ok_and(|stated| stated.is_some_and(|stated| stated == name))
-            && presence::real_path(&other)? != own
+            && presence::identity(&other)? != own
         {
             return Ok(Some(other));
         }

@@ -8,11 +8,15 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::{Agreement, VerifiedFile, VerifyError, archived};
+#[cfg(feature = "hdf5")]
+use crate::runner::execute::RunError;
 use crate::store::archive::open::Archive;
 use crate::store::archive::{self, ArchiveError};
 use crate::store::bundle::{Opened, is_bundle};
 #[cfg(feature = "hdf5")]
 use crate::store::bundle::{is_long, published};
+#[cfg(feature = "hdf5")]
+use crate::store::error::StoreError;
 #[cfg(feature = "hdf5")]
 use crate::store::hdf5;
 use crate::store::index::{self, INDEX, Index};
@@ -146,7 +150,6 @@ impl<R: Read + Seek> Files<'_, R> {
     fn hdf5(&self, work: &Path) -> Result<Option<VerifiedFile>, VerifyError> {
         let name = format!("{}.h5", self.manifest.study);
         let Some(archived) = self.bytes.get(&name) else { return Ok(None) };
-        let failed = |problem: String| self.archive.damaged(&name, &problem);
         let mut tables = Vec::new();
         let is_there = |record: &TableRecord| record.files.is_empty() && !is_long(record.rows);
         for (group, record) in published(self.manifest).filter(|(_, record)| is_there(record)) {
@@ -155,10 +158,7 @@ impl<R: Read + Seek> Files<'_, R> {
         }
         let found = |wanted: &TableRecord| {
             let (_, _, table) = tables.iter().find(|(_, record, _)| record.file == wanted.file).ok_or_else(|| {
-                crate::store::error::StoreError::Format {
-                    table: wanted.file.clone(),
-                    problem: "it is missing".to_owned(),
-                }
+                StoreError::Format { table: wanted.file.clone(), problem: "it is missing".to_owned() }
             })?;
             Ok(Arc::clone(table))
         };
@@ -168,7 +168,7 @@ impl<R: Read + Seek> Files<'_, R> {
             return Ok(Some(VerifiedFile { file: name, agreement: Agreement::Identical }));
         }
         let path = work.join("archived.h5");
-        std::fs::write(&path, archived).map_err(|error| failed(error.to_string()))?;
+        std::fs::write(&path, archived).map_err(|error| RunError::from(StoreError::io("write", &path)(error)))?;
         let other = tables.iter().find_map(|(stage, record, table)| {
             // The same table gives the same Parquet file, NaN and signs of zero as well.
             let same = hdf5::read(&path, stage, record.table())

@@ -144,9 +144,23 @@ impl<R: Read + Seek> Archive<R> {
     fn of_entries(path: String, files: Files<R>, mut entries: BTreeMap<String, usize>) -> Result<Self, ArchiveError> {
         entries.retain(|name, _| !is_of_a_system(name));
         let mut outside = Vec::new();
-        let mut descriptions = entries.keys().filter_map(|name| name.strip_suffix(METADATA)?.strip_suffix('/'));
-        let (folder, others) = (descriptions.next().map(|folder| format!("{folder}/")), descriptions.next());
-        if let Some(folder) = folder.filter(|_| !entries.contains_key(METADATA) && others.is_none()) {
+        let folders =
+            entries.keys().filter_map(|name| name.strip_suffix(METADATA).filter(|folder| folder.ends_with('/')));
+        let mut folders: Vec<String> = folders.map(str::to_owned).collect();
+        if entries.contains_key(METADATA) {
+            folders.clear();
+        }
+        if let [all @ .., last] = &folders[..]
+            && !all.is_empty()
+        {
+            let named: Vec<String> = all.iter().take(MOST_TOLD).map(|folder| format!("`{folder}`")).collect();
+            let how =
+                if matches!(files, Files::Zip(_)) { "unpack it, and name one of them" } else { "name one of them" };
+            let (number, named) = (folders.len(), named.join(", "));
+            let problem = format!("it has {number} crates, in {named} and `{last}`: {how}");
+            return Err(ArchiveError::NoArchive { path, problem });
+        }
+        if let Some(folder) = folders.pop() {
             let (inside, beside): (Vec<_>, Vec<_>) =
                 entries.into_iter().partition(|(name, _)| name.starts_with(&folder));
             outside = beside.into_iter().map(|(name, _)| name).collect();

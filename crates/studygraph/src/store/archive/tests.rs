@@ -141,7 +141,7 @@ fn crates_are_read_unpacked_and_in_a_folder_and_beside_files_of_systems() {
     // Two crates are not one.
     let mut two = inside.clone();
     two.extend(digested().into_iter().map(|(name, bytes)| (format!("other/{name}"), bytes)));
-    refused(&pack(&two).unwrap(), "has no `ro-crate-metadata.json`");
+    refused(&pack(&two).unwrap(), "it has 2 crates, in `other/` and `up/crate/`: unpack it, and name one of them");
 }
 
 #[test]

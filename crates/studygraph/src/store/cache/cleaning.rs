@@ -49,6 +49,25 @@ pub struct Removed {
     pub foreign: Vec<PathBuf>,
 }
 
+/// An entry, or a folder of entries, with a fault.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Faulty {
+    pub path: PathBuf,
+    pub problem: String,
+    pub left: Left,
+}
+
+/// What a check leaves of an entry with a fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Left {
+    /// It is removed.
+    Nothing,
+    /// It is damaged, and still there.
+    Damaged,
+    /// The system does not let it be read, and it is as it was.
+    Unread,
+}
+
 /// What lies in a cache.
 #[derive(Default)]
 struct Content {
@@ -74,15 +93,31 @@ enum Place {
 }
 
 impl Cache {
-    /// Reads every byte of every entry; the damaged ones, and folders that cannot be looked into. `remove`: so that a run
-    /// with nothing else to do need not read them all to know.
+    /// Reads every byte of every entry; those with a fault, and folders that cannot be looked into. `remove`: damaged ones go,
+    /// so that a run with nothing else to do need not read them all to know.
     #[must_use]
-    pub fn verify(&self, remove: bool) -> Vec<(PathBuf, String)> {
+    pub fn verify(&self, remove: bool) -> Vec<Faulty> {
         let mut content = Content::default();
+        let unread = |path: PathBuf, problem: String| Faulty { path, problem, left: Left::Unread };
         let unseen = content.add_entries(&self.root);
-        let mut damaged: Vec<(PathBuf, String)> =
-            unseen.into_iter().map(|(path, error)| (path, error.to_string())).collect();
+        let reason = |error: StoreError| match error {
+            StoreError::Io { source, .. } => source.to_string(),
+            other => other.to_string(),
+        };
+        let mut faulty: Vec<Faulty> = unseen.into_iter().map(|(path, error)| unread(path, reason(error))).collect();
+        // What is somebody's and can be read does no harm there.
+        for path in content.foreign.into_iter().filter(|path| is_in_an_entrys_place(path)) {
+            if let Err(error) = presence::metadata(&path) {
+                faulty.push(unread(path, error.to_string()));
+            }
+        }
         for (path, key) in content.entries {
+            if let Err(error) = File::open(&path)
+                && error.kind() != ErrorKind::NotFound
+            {
+                faulty.push(unread(path, error.to_string()));
+                continue;
+            }
             let problem = match entry::open(&path, key) {
                 Err(problem) => Some(problem),
                 Ok(None) => None,
@@ -96,17 +131,19 @@ impl Cache {
                 if remove {
                     self.forget(key);
                 }
-                damaged.push((path, problem));
+                let is_gone = matches!(presence::link_metadata(&path), Ok(None));
+                faulty.push(Faulty { path, problem, left: if is_gone { Left::Nothing } else { Left::Damaged } });
             }
         }
         for (path, key, problem) in self.packs.checked() {
-            if let Some(key) = key.filter(|_| remove) {
+            let removed = key.filter(|_| remove);
+            if let Some(key) = removed {
                 self.packs.forget(key);
             }
-            damaged.push((path, problem));
+            faulty.push(Faulty { path, problem, left: removed.map_or(Left::Damaged, |_| Left::Nothing) });
         }
         self.packs.flush();
-        damaged
+        faulty
     }
 
     /// The keys of all entries, in files of their own and in packs, as far as the folders can be looked into.
@@ -283,6 +320,12 @@ impl Content {
         }
         unseen
     }
+}
+
+/// Whether something among the entries has the name of one, or of a folder of them.
+fn is_in_an_entrys_place(path: &Path) -> bool {
+    let folder = path.parent().map(name).unwrap_or_default();
+    [name(path) + &"0".repeat(62), folder + &name(path)].iter().any(|key| Digest::from_hex(key).is_some())
 }
 
 fn name(path: &Path) -> String {

@@ -101,9 +101,10 @@ pub(super) fn compare(old: Option<&Known>, new: &Manifest, draws: bool, folder: 
     let pictures: Vec<String> = old_files().filter(|file| is_drawn(file)).collect();
     let drawn =
         draws && (any || !pictures.iter().any(|file| file == PAGE) || !pictures.iter().all(|file| intact(file)));
+    let is_moved = old.is_some_and(|old| new.study_folder.names_another_file(&old.manifest.study_folder));
     let mut foreign = old.map_or_else(Vec::new, Known::changed);
     foreign.retain(|file| !remove.contains(file) && (draws || !is_drawn(file)));
-    Changes { manifest: any || drawn, tables, files, hdf5, drawn, remove, foreign }
+    Changes { manifest: any || drawn || is_moved, tables, files, hdf5, drawn, remove, foreign }
 }
 
 /// Whether two manifests say the same of the results, whoever computed them, when and where.

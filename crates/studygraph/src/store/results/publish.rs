@@ -23,7 +23,7 @@ use crate::store::file::{self, Durability};
 use crate::store::hdf5;
 use crate::store::index::{self, Digesting, Index, Seen};
 use crate::store::lock;
-use crate::store::manifest::{FileRecord, Manifest, TableRecord};
+use crate::store::manifest::{FileRecord, Manifest, StudyFolder, TableRecord};
 use crate::store::parquet;
 use crate::table::data::Table;
 
@@ -114,8 +114,8 @@ pub(super) struct Listed {
 }
 
 impl Folder {
-    /// Brings the folder up to date. `manifest` comes without facts and files; `facts` is asked only when something is
-    /// written.
+    /// Brings the folder up to date. `manifest` comes without files and facts, but for the study's file where the folder must
+    /// record it anew; `facts` is asked only when something is written.
     ///
     /// # Errors
     /// When a table cannot be had or a file not be written, or when the source says so; what was there before stays valid.
@@ -239,8 +239,12 @@ impl Folder {
             // Files that were missing are there again, and nothing else is new: the record of who computed it stands.
             (Some((old, stages)), _) => {
                 let Manifest { program, study_folder, machine, written, seconds, .. } = &old.manifest;
-                let (program, study_folder) = (program.clone(), study_folder.clone());
+                let (program, mut study_folder) = (program.clone(), study_folder.clone());
                 let (machine, written) = (machine.clone(), written.clone());
+                if new.study_folder.names_another_file(&study_folder) {
+                    let StudyFolder { file, name, .. } = new.study_folder;
+                    study_folder = StudyFolder { file, name, ..study_folder };
+                }
                 Manifest { program, study_folder, machine, written, seconds: *seconds, stages, ..new }
             }
             (_, Some(facts)) => {

@@ -57,9 +57,14 @@ pub(super) fn licenses(expression: &str) -> impl Iterator<Item = &str> {
     words.filter(|word| !["", "AND", "OR", "WITH"].contains(word))
 }
 
-/// The address of the text of a licence.
+/// Whether a licence is one of the SPDX list, and not one that only an SPDX document describes.
+fn is_listed(spdx: &str) -> bool {
+    !["LicenseRef-", "AdditionRef-", "DocumentRef-"].iter().any(|start| spdx.starts_with(start))
+}
+
+/// The identifier of a licence: the address of its text if the SPDX list has it.
 pub(super) fn license_text(spdx: &str) -> String {
-    format!("https://spdx.org/licenses/{spdx}")
+    if is_listed(spdx) { format!("https://spdx.org/licenses/{spdx}") } else { format!("#{spdx}") }
 }
 
 pub(super) fn authors<'a>(description: &'a Description<'_>) -> impl Iterator<Item = (String, &'a Author)> {
@@ -76,9 +81,16 @@ pub(super) fn rights(description: &Description<'_>) -> Vec<Value> {
     let mut entities: Vec<Value> = all
         .into_iter()
         .map(|spdx| {
+            let description = if is_listed(spdx) {
+                format!("{spdx} of the SPDX list of licences, which has its text.")
+            } else {
+                format!(
+                    "{spdx}, which is not in the SPDX list of licences; its text comes from whoever made this archive."
+                )
+            };
             json!({
                 "@id": license_text(spdx), "@type": "CreativeWork", "name": spdx, "identifier": spdx,
-                "description": format!("{spdx} of the SPDX list of licences, which has its text."),
+                "description": description,
             })
         })
         .collect();
