@@ -13,11 +13,12 @@ use rayon::prelude::*;
 
 use declare::error::Diagnostic;
 use gearmesh::gear::geometry::GearPair;
+use gearmesh::gear::transmission_error::beyond_model::BeyondModel;
 use gearmesh::gear::transmission_error::curve::Summary;
 use gearmesh::gear::transmission_error::cycle::MeshCycle;
 use gearmesh::gear::transmission_error::load_case::LoadCase;
 
-use crate::curve::{beyond, is_long, wanted};
+use crate::curve::{is_long, wanted};
 use crate::design::Designs;
 use crate::errors::{refused, refused_at, run_failed};
 use crate::stiffness::Stiffness;
@@ -33,7 +34,7 @@ enum Missing {
     /// It does not fit the pair.
     Unfit(Diagnostic),
     /// It is loaded beyond the model.
-    Beyond(String),
+    Beyond(BeyondModel),
 }
 
 impl Missing {
@@ -42,8 +43,8 @@ impl Missing {
         match (self, index) {
             (Self::Unfit(wrong), Some(index)) => refused_at(py, index, wrong),
             (Self::Unfit(wrong), None) => refused(py, wrong),
-            (Self::Beyond(message), Some(index)) => run_failed(py, &format!("element {index}: {message}")),
-            (Self::Beyond(message), None) => run_failed(py, message),
+            (Self::Beyond(beyond), Some(index)) => run_failed(py, &format!("element {index}: {beyond}")),
+            (Self::Beyond(beyond), None) => run_failed(py, &beyond.to_string()),
         }
     }
 }
@@ -70,8 +71,8 @@ impl Many {
         if self.torques.len() == 1 { self.torques[0] } else { self.torques[index] }
     }
 
-    /// What each comes to, in order, on so many threads; `of` has nothing for what is beyond the model. That and what does not fit
-    /// is none where it is kept, and ends it elsewhere.
+    /// What each comes to, in order, on so many threads; a design beyond the model or
+    /// one that does not fit is none where it is kept, and ends it elsewhere.
     fn each<T: Send + Clone + 'static>(
         self,
         py: Python<'_>,
@@ -79,7 +80,7 @@ impl Many {
         cycle: Arc<MeshCycle>,
         threads: usize,
         keeps_invalid: bool,
-        of: impl Fn(&LoadCase<'_>) -> Option<T> + Send + Sync + 'static,
+        of: impl Fn(&LoadCase<'_>) -> Result<T, BeyondModel> + Send + Sync + 'static,
     ) -> PyResult<Vec<Option<T>>> {
         let (is_single, count, pair) = (self.is_single, self.count, Arc::clone(pair));
         let is_short = count <= AT_ONCE && !is_long(cycle.settings, count);
@@ -88,7 +89,7 @@ impl Many {
         let found = move |index: usize| {
             let design = self.designs.at(index, &pair).map_err(Missing::Unfit)?;
             let loading = LoadCase::new(&cycle, &design, self.torque(index));
-            of(&loading).ok_or_else(|| Missing::Beyond(beyond(&loading)))
+            of(&loading).map_err(Missing::Beyond)
         };
         let one = move |index: usize| match found(index) {
             Ok(found) => Ok(Some(found)),
@@ -182,9 +183,10 @@ pub fn peak_to_peak<'py>(
     let own = stiffness.get();
     let cycle = own.asked(py, cycle, positions)?;
     let is_single = many.is_single;
-    let found = many.each(py, &own.of, cycle, threads, is_kept(py, invalid)?, |loading| {
-        Some(loading.peak_to_peak()).filter(|found| found.is_finite())
-    })?;
+    // The path of the method would have one lifetime only.
+    #[allow(clippy::redundant_closure_for_method_calls)]
+    let found =
+        many.each(py, &own.of, cycle, threads, is_kept(py, invalid)?, |loading| loading.checked_peak_to_peak())?;
     let found: Vec<f64> = found.into_iter().map(|found| found.unwrap_or(f64::NAN)).collect();
     match found[..] {
         [found] if is_single => Ok(found.into_pyobject(py)?.into_any()),
@@ -228,7 +230,7 @@ pub fn summaries<'py>(
     let wanted = wanted(py, harmonics, pressure)?;
     let found = many.each(py, &own.of, cycle, threads, is_kept(py, invalid)?, move |loading| {
         let summary = loading.summary(wanted);
-        loading.holds(summary.largest.value).then_some(summary)
+        loading.check_approach(summary.largest.value).map(|()| summary)
     })?;
     let all = PyDict::new(py);
     let column = |value: &dyn Fn(&Summary) -> f64| -> Bound<'py, PyArray1<f64>> {

@@ -7,7 +7,6 @@
 use crate::stage::names::summary;
 use declare::declared::Placed;
 use declare::error::{Diagnostic, suggest};
-use declare::units::in_unit;
 use gearmesh::gear::geometry::Side;
 use gearmesh::gear::transmission_error::asked::{Asked, Found};
 use gearmesh::gear::transmission_error::curve::{Summary, Wanted};
@@ -202,12 +201,7 @@ impl Measures {
             };
             (loading.asked(asked), [f64::NAN; 2], [f64::NAN; 2])
         };
-        if !loading.holds(curve.largest.value) {
-            let (found, maximum) = (in_unit(curve.largest.value, "mm"), in_unit(loading.largest_approach(), "mm"));
-            return Err(format!(
-                "the gears approach by {found:.6} mm, but `corner_contact: exact` holds up to {maximum:.6} mm only"
-            ));
-        }
+        loading.check_approach(curve.largest.value).map_err(|beyond| beyond.to_string())?;
         let peak_to_peak = curve.largest.value - curve.smallest.value;
         let of_pressure = |get: fn(&LargestPressure) -> f64| curve.pressure.as_ref().map_or(f64::NAN, get);
         let mut numbers = Vec::with_capacity(self.0.len());

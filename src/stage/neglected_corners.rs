@@ -97,8 +97,8 @@ impl<'a> WithoutCorners<'a> {
         let case = |size: f64, sentence: String| {
             Some(Warning::Cases(Cases::one(ABOUT, name, (torque, "N m"), (size, sentence))))
         };
-        if !loading.holds(with.largest.value) {
-            let limit = significant(in_unit(loading.largest_approach(), "mm"), 3);
+        if let Err(beyond) = loading.check_approach(with.largest.value) {
+            let limit = significant(in_unit(beyond.largest.0, "mm"), 3);
             let sentence = format!(
                 "{touch}; the size of the error is unknown, since `corner_contact: exact` holds up to an approach of {limit} \
                  mm only"

@@ -7,6 +7,7 @@
 mod across;
 mod apart;
 pub mod asked;
+pub mod beyond_model;
 mod change;
 mod closed;
 mod count;
