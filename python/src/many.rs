@@ -17,6 +17,7 @@ use gearmesh::gear::transmission_error::beyond_model::BeyondModel;
 use gearmesh::gear::transmission_error::curve::Summary;
 use gearmesh::gear::transmission_error::cycle::MeshCycle;
 use gearmesh::gear::transmission_error::load_case::LoadCase;
+use gearmesh::gear::transmission_error::quantities::{Need, QUANTITIES};
 
 use crate::curve::{is_long, wanted};
 use crate::design::Designs;
@@ -200,10 +201,9 @@ pub fn peak_to_peak<'py>(
 ///
 /// Returns
 /// -------
-/// dict from name to an array of shape (designs,): ``peak_to_peak``, ``mean``, ``unloaded_peak_to_peak`` and ``harmonic_1`` on in
-/// metres, ``variance`` in square metres, ``loaded_contact_ratio``, ``largest_load_share``, and with ``pressure``
-/// ``largest_pressure`` in pascals. With ``invalid="nan"`` a design that does not fit, or approaches farther than corner contact
-/// is modelled for, has NaN throughout.
+/// dict from name to an array of shape (designs,), in SI units: the numbers of a curve that the table ``summary`` of the stage ``ste``
+/// has, by its names, those of pressure with ``pressure`` only; and ``harmonic_1`` on in metres. With ``invalid="nan"`` a design that
+/// does not fit, or approaches farther than corner contact is modelled for, has NaN throughout.
 ///
 /// >>> found = summaries(stiffness, [100.0, 150.0], relief, harmonics=1)
 /// >>> sorted(found)[:3]
@@ -236,16 +236,13 @@ pub fn summaries<'py>(
     let column = |value: &dyn Fn(&Summary) -> f64| -> Bound<'py, PyArray1<f64>> {
         found.iter().map(|found| found.as_ref().map_or(f64::NAN, value)).collect::<Vec<_>>().into_pyarray(py)
     };
-    all.set_item("peak_to_peak", column(&|summary| summary.peak_to_peak))?;
-    all.set_item("mean", column(&|summary| summary.mean))?;
-    all.set_item("variance", column(&|summary| summary.variance))?;
-    all.set_item("unloaded_peak_to_peak", column(&|summary| summary.unloaded_peak_to_peak))?;
-    all.set_item("loaded_contact_ratio", column(&|summary| summary.loaded_contact_ratio))?;
-    all.set_item("largest_load_share", column(&|summary| summary.largest_load_share))?;
-    if pressure {
-        let largest =
-            |summary: &Summary| summary.largest_pressure.as_ref().map_or(f64::NAN, |found| found.extremum.value);
-        all.set_item("largest_pressure", column(&largest))?;
+    let of_curve = QUANTITIES.iter().filter(|quantity| match quantity.need {
+        Need::Pressure => pressure,
+        Need::RootStress => false,
+        _ => true,
+    });
+    for quantity in of_curve {
+        all.set_item(quantity.name, column(&quantity.get))?;
     }
     for order in 0..harmonics {
         all.set_item(format!("harmonic_{}", order + 1), column(&|summary| summary.harmonics[order]))?;

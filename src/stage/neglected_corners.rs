@@ -8,10 +8,10 @@ use crate::stage::{Inputs, common};
 use declare::number::significant;
 use declare::units::in_unit;
 use gearmesh::gear::contact::CornerContact;
-use gearmesh::gear::transmission_error::asked::Asked;
 use gearmesh::gear::transmission_error::curve::{Point, Summary, Wanted};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
+use gearmesh::gear::transmission_error::needs::Needs;
 use gearmesh::gear::transmission_error::neglected_corners::NeglectedCorners;
 use studygraph::warning::{Cases, Warning};
 
@@ -88,7 +88,7 @@ impl<'a> WithoutCorners<'a> {
     #[must_use]
     pub fn compared(&self, loading: &LoadCase) -> Option<Warning> {
         let Self { name, torque, estimated, .. } = *self;
-        let with = loading.asked(Asked { integrals: true, ..Asked::default() });
+        let with = loading.summary_of(Needs { integrals: true, ..Needs::default() });
         let [before, after] = estimated.corners.lengths.map(|length| significant(in_unit(length, "mm"), 3));
         let touch = format!(
             "design `{name}` at {torque} N m: `corner_contact` is `none`, but the gears approach so far that tip corners \
