@@ -193,12 +193,6 @@ impl TransmissionError {
     }
 }
 
-/// A design and a torque beyond what corner contact is modelled for.
-pub fn beyond(loading: &LoadCase<'_>) -> String {
-    let limit = loading.largest_approach();
-    format!("the gears approach farther than the {limit:e} m up to which `corner_contact` of `exact` holds")
-}
-
 /// The transmission error of one design under one torque over a mesh cycle.
 ///
 /// Parameters
@@ -288,9 +282,7 @@ pub fn transmission_error(
             let largest = points.iter().map(|point| point.transmission_error).fold(f64::NEG_INFINITY, f64::max);
             (points, None, largest)
         };
-        if !loading.holds(largest) {
-            return Err(Failure::new(beyond(&loading)));
-        }
+        loading.check_approach(largest).map_err(|beyond| Failure::new(beyond.to_string()))?;
         Ok((TransmissionError { points, summary }, without))
     };
     let made = if is_long { abandoning(py, move |_| make())? } else { py.detach(make) };

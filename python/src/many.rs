@@ -13,11 +13,13 @@ use rayon::prelude::*;
 
 use declare::error::Diagnostic;
 use gearmesh::gear::geometry::GearPair;
+use gearmesh::gear::transmission_error::beyond_model::BeyondModel;
 use gearmesh::gear::transmission_error::curve::Summary;
 use gearmesh::gear::transmission_error::cycle::MeshCycle;
 use gearmesh::gear::transmission_error::load_case::LoadCase;
+use gearmesh::gear::transmission_error::quantities::{Need, QUANTITIES};
 
-use crate::curve::{beyond, is_long, wanted};
+use crate::curve::{is_long, wanted};
 use crate::design::Designs;
 use crate::errors::{refused, refused_at, run_failed};
 use crate::stiffness::Stiffness;
@@ -33,7 +35,7 @@ enum Missing {
     /// It does not fit the pair.
     Unfit(Diagnostic),
     /// It is loaded beyond the model.
-    Beyond(String),
+    Beyond(BeyondModel),
 }
 
 impl Missing {
@@ -42,8 +44,8 @@ impl Missing {
         match (self, index) {
             (Self::Unfit(wrong), Some(index)) => refused_at(py, index, wrong),
             (Self::Unfit(wrong), None) => refused(py, wrong),
-            (Self::Beyond(message), Some(index)) => run_failed(py, &format!("element {index}: {message}")),
-            (Self::Beyond(message), None) => run_failed(py, message),
+            (Self::Beyond(beyond), Some(index)) => run_failed(py, &format!("element {index}: {beyond}")),
+            (Self::Beyond(beyond), None) => run_failed(py, &beyond.to_string()),
         }
     }
 }
@@ -70,8 +72,8 @@ impl Many {
         if self.torques.len() == 1 { self.torques[0] } else { self.torques[index] }
     }
 
-    /// What each comes to, in order, on so many threads; `of` has nothing for what is beyond the model. That and what does not fit
-    /// is none where it is kept, and ends it elsewhere.
+    /// What each comes to, in order, on so many threads; a design beyond the model or
+    /// one that does not fit is none where it is kept, and ends it elsewhere.
     fn each<T: Send + Clone + 'static>(
         self,
         py: Python<'_>,
@@ -79,7 +81,7 @@ impl Many {
         cycle: Arc<MeshCycle>,
         threads: usize,
         keeps_invalid: bool,
-        of: impl Fn(&LoadCase<'_>) -> Option<T> + Send + Sync + 'static,
+        of: impl Fn(&LoadCase<'_>) -> Result<T, BeyondModel> + Send + Sync + 'static,
     ) -> PyResult<Vec<Option<T>>> {
         let (is_single, count, pair) = (self.is_single, self.count, Arc::clone(pair));
         let is_short = count <= AT_ONCE && !is_long(cycle.settings, count);
@@ -88,7 +90,7 @@ impl Many {
         let found = move |index: usize| {
             let design = self.designs.at(index, &pair).map_err(Missing::Unfit)?;
             let loading = LoadCase::new(&cycle, &design, self.torque(index));
-            of(&loading).ok_or_else(|| Missing::Beyond(beyond(&loading)))
+            of(&loading).map_err(Missing::Beyond)
         };
         let one = move |index: usize| match found(index) {
             Ok(found) => Ok(Some(found)),
@@ -182,9 +184,10 @@ pub fn peak_to_peak<'py>(
     let own = stiffness.get();
     let cycle = own.asked(py, cycle, positions)?;
     let is_single = many.is_single;
-    let found = many.each(py, &own.of, cycle, threads, is_kept(py, invalid)?, |loading| {
-        Some(loading.peak_to_peak()).filter(|found| found.is_finite())
-    })?;
+    // The path of the method would have one lifetime only.
+    #[allow(clippy::redundant_closure_for_method_calls)]
+    let found =
+        many.each(py, &own.of, cycle, threads, is_kept(py, invalid)?, |loading| loading.checked_peak_to_peak())?;
     let found: Vec<f64> = found.into_iter().map(|found| found.unwrap_or(f64::NAN)).collect();
     match found[..] {
         [found] if is_single => Ok(found.into_pyobject(py)?.into_any()),
@@ -198,10 +201,9 @@ pub fn peak_to_peak<'py>(
 ///
 /// Returns
 /// -------
-/// dict from name to an array of shape (designs,): ``peak_to_peak``, ``mean``, ``unloaded_peak_to_peak`` and ``harmonic_1`` on in
-/// metres, ``variance`` in square metres, ``loaded_contact_ratio``, ``largest_load_share``, and with ``pressure``
-/// ``largest_pressure`` in pascals. With ``invalid="nan"`` a design that does not fit, or approaches farther than corner contact
-/// is modelled for, has NaN throughout.
+/// dict from name to an array of shape (designs,), in SI units: the numbers of a curve that the table ``summary`` of the stage ``ste``
+/// has, by its names, those of pressure with ``pressure`` only; and ``harmonic_1`` on in metres. With ``invalid="nan"`` a design that
+/// does not fit, or approaches farther than corner contact is modelled for, has NaN throughout.
 ///
 /// >>> found = summaries(stiffness, [100.0, 150.0], relief, harmonics=1)
 /// >>> sorted(found)[:3]
@@ -228,22 +230,19 @@ pub fn summaries<'py>(
     let wanted = wanted(py, harmonics, pressure)?;
     let found = many.each(py, &own.of, cycle, threads, is_kept(py, invalid)?, move |loading| {
         let summary = loading.summary(wanted);
-        loading.holds(summary.largest.value).then_some(summary)
+        loading.check_approach(summary.largest.value).map(|()| summary)
     })?;
     let all = PyDict::new(py);
     let column = |value: &dyn Fn(&Summary) -> f64| -> Bound<'py, PyArray1<f64>> {
         found.iter().map(|found| found.as_ref().map_or(f64::NAN, value)).collect::<Vec<_>>().into_pyarray(py)
     };
-    all.set_item("peak_to_peak", column(&|summary| summary.peak_to_peak))?;
-    all.set_item("mean", column(&|summary| summary.mean))?;
-    all.set_item("variance", column(&|summary| summary.variance))?;
-    all.set_item("unloaded_peak_to_peak", column(&|summary| summary.unloaded_peak_to_peak))?;
-    all.set_item("loaded_contact_ratio", column(&|summary| summary.loaded_contact_ratio))?;
-    all.set_item("largest_load_share", column(&|summary| summary.largest_load_share))?;
-    if pressure {
-        let largest =
-            |summary: &Summary| summary.largest_pressure.as_ref().map_or(f64::NAN, |found| found.extremum.value);
-        all.set_item("largest_pressure", column(&largest))?;
+    let of_curve = QUANTITIES.iter().filter(|quantity| match quantity.need {
+        Need::Pressure => pressure,
+        Need::RootStress => false,
+        _ => true,
+    });
+    for quantity in of_curve {
+        all.set_item(quantity.name, column(&quantity.get))?;
     }
     for order in 0..harmonics {
         all.set_item(format!("harmonic_{}", order + 1), column(&|summary| summary.harmonics[order]))?;

@@ -1,19 +1,16 @@
 //! Numbers of a curve of the transmission error by the names that the stage kind `ste` gives them, and what is asked of the
 //! curve for them.
 //!
-//! They are those of the stage, to the last bit but for what `asked.rs` of the kernels says of extremes. Must not know: where
+//! They are those of the stage, to the last bit but for what `needs.rs` of the kernels says of extremes. Must not know: where
 //! the curve comes from, who asks.
 
 use crate::stage::names::summary;
 use declare::declared::Placed;
 use declare::error::{Diagnostic, suggest};
-use declare::units::in_unit;
-use gearmesh::gear::geometry::Side;
-use gearmesh::gear::transmission_error::asked::{Asked, Found};
-use gearmesh::gear::transmission_error::curve::{Summary, Wanted};
 use gearmesh::gear::transmission_error::cycle::Settings;
 use gearmesh::gear::transmission_error::load_case::LoadCase;
-use gearmesh::gear::transmission_error::pressure::LargestPressure;
+use gearmesh::gear::transmission_error::needs::Needs;
+use gearmesh::gear::transmission_error::quantities::{Need, QUANTITIES, Quantity, quantity};
 use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
 use studygraph::table::select::CellName;
 
@@ -24,64 +21,35 @@ const AMPLITUDE: &str = "amplitude";
 /// Beyond it a harmonic says more of the sampling than of the gears: what `harmonics` of the stage may be.
 const HIGHEST_ORDER: usize = 200;
 
-/// A number of a curve, in SI.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A number of a curve.
+#[derive(Clone, Copy, Debug)]
 enum Get {
-    Mean,
-    PeakToPeak,
-    Maximum,
-    Minimum,
-    Variance,
-    ReciprocalVariance,
-    Unloaded,
-    ContactRatio,
-    LoadShare,
-    Pressure,
-    PressurePosition,
-    PressureRoll,
-    PressureZ,
-    PressureHalfWidth,
-    RootStress(Side),
+    Quantity(&'static Quantity),
+    Harmonic(usize),
     Positions,
     Slices,
     ErrorEstimate,
-    Harmonic(usize),
 }
 
-/// Columns of the summary, with their units.
-const OF_SUMMARY: &[(&str, &str, Get)] = &[
-    ("mean", "um", Get::Mean),
-    ("peak_to_peak", "um", Get::PeakToPeak),
-    ("maximum", "um", Get::Maximum),
-    ("minimum", "um", Get::Minimum),
-    ("variance", "um^2", Get::Variance),
-    ("reciprocal_variance", "1/um^2", Get::ReciprocalVariance),
-    ("unloaded_peak_to_peak", "um", Get::Unloaded),
-    ("loaded_contact_ratio", "", Get::ContactRatio),
-    ("largest_load_share", "", Get::LoadShare),
-    (summary::LARGEST_PRESSURE, "MPa", Get::Pressure),
-    ("pressure_position", "mm", Get::PressurePosition),
-    ("pressure_roll_angle", "deg", Get::PressureRoll),
-    ("pressure_z", "mm", Get::PressureZ),
-    ("pressure_half_width", "um", Get::PressureHalfWidth),
-    (summary::LARGEST_ROOT_STRESS_PINION, "MPa", Get::RootStress(Side::Pinion)),
-    (summary::LARGEST_ROOT_STRESS_GEAR, "MPa", Get::RootStress(Side::Gear)),
-    ("positions", "", Get::Positions),
-    ("slices", "", Get::Slices),
-    ("error_estimate", "", Get::ErrorEstimate),
-];
-
-/// Those that tell about the sampling, not about the gears.
-const OF_SAMPLING: [Get; 3] = [Get::Positions, Get::Slices, Get::ErrorEstimate];
+/// Numbers of the sampling, which no design changes.
+const OF_SAMPLING: [(&str, Get); 3] =
+    [("positions", Get::Positions), ("slices", Get::Slices), ("error_estimate", Get::ErrorEstimate)];
 
 /// A number of a curve and how it is written.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Measure {
     get: Get,
     /// As a column of a table of its own.
     pub column: String,
     /// As that column shows it.
     pub unit: &'static str,
+}
+
+/// The column names it.
+impl PartialEq for Measure {
+    fn eq(&self, other: &Self) -> bool {
+        self.column == other.column
+    }
 }
 
 impl Measure {
@@ -98,8 +66,10 @@ impl Measure {
         if cell.table != summary::TABLE || !cell.conditions.is_empty() {
             return None;
         }
-        let (name, unit, get) = OF_SUMMARY.iter().find(|(name, ..)| *name == cell.column)?;
-        Some(Self { get: *get, column: (*name).to_owned(), unit })
+        let of_sampling = || OF_SAMPLING.iter().find(|(name, _)| *name == cell.column).map(|(_, get)| (*get, ""));
+        let of_curve = quantity(&cell.column).map(|quantity| (Get::Quantity(quantity), quantity.unit));
+        let (get, unit) = of_curve.or_else(of_sampling)?;
+        Some(Self { get, column: cell.column.clone(), unit })
     }
 
     /// Reads `column` of the summary, or `harmonics[order=2].amplitude`: a number that a design changes.
@@ -114,8 +84,9 @@ impl Measure {
             format!("ste.{}.{written}", summary::TABLE)
         };
         let found = CellName::parse(&whole).ok().as_ref().and_then(Self::of_cell);
-        let names = || OF_SUMMARY.iter().filter(|(.., get)| !OF_SAMPLING.contains(get)).map(|(name, ..)| *name);
-        found.filter(|measure| !OF_SAMPLING.contains(&measure.get)).ok_or_else(|| {
+        let names = || QUANTITIES.iter().map(|quantity| quantity.name);
+        let is_of_curve = |measure: &Self| matches!(measure.get, Get::Quantity(_) | Get::Harmonic(_));
+        found.filter(is_of_curve).ok_or_else(|| {
             let help = if written.starts_with(HARMONICS) {
                 format!("a harmonic is written `{HARMONICS}[{ORDER}=1].{AMPLITUDE}`, its order at most {HIGHEST_ORDER}")
             } else {
@@ -136,19 +107,13 @@ impl Measure {
     /// Whether a cycle has to know what loads do to the roots.
     #[must_use]
     pub fn needs_roots(&self) -> bool {
-        matches!(self.get, Get::RootStress(_))
+        matches!(self.get, Get::Quantity(quantity) if quantity.need == Need::RootStress)
     }
 
-    /// Whether it is the peak-to-peak, and nothing else is asked.
+    /// Whether it is the quantity with this name.
     #[must_use]
-    pub fn is_peak_to_peak(&self) -> bool {
-        self.get == Get::PeakToPeak
-    }
-
-    /// Whether it is the variance.
-    #[must_use]
-    pub fn is_variance(&self) -> bool {
-        self.get == Get::Variance
+    pub fn is(&self, name: &str) -> bool {
+        matches!(self.get, Get::Quantity(quantity) if quantity.name == name)
     }
 }
 
@@ -180,61 +145,23 @@ impl Measures {
         (settings, harmonics): (Settings, usize),
         again: impl Fn(Settings) -> f64,
     ) -> Result<Vec<f64>, String> {
-        let asks = |wanted: &[Get]| self.0.iter().any(|measure| wanted.contains(&measure.get));
-        let pressure =
-            [Get::Pressure, Get::PressurePosition, Get::PressureRoll, Get::PressureZ, Get::PressureHalfWidth];
-        let pressure = asks(&pressure);
-        let root_stress = self.0.iter().any(Measure::needs_roots);
-        let of_states = root_stress || asks(&[Get::ContactRatio, Get::LoadShare]);
-        let (curve, of_pairs, of_roots) = if of_states {
-            let harmonics = harmonics.max(self.highest_order());
-            let summary = loading.summary(Wanted { harmonics, pressure, root_stress });
-            let of_pairs = [summary.loaded_contact_ratio, summary.largest_load_share];
-            let of_roots = summary.largest_root_stress.map(|roots| roots.map(|root| root.extremum.value));
-            (of_summary(summary), of_pairs, of_roots.unwrap_or([f64::NAN; 2]))
-        } else {
-            let asked = Asked {
-                integrals: asks(&[Get::Mean, Get::Variance, Get::ReciprocalVariance]),
-                harmonics: self.highest_order(),
-                spans_for: harmonics,
-                pressure,
-                unloaded: asks(&[Get::Unloaded]),
-            };
-            (loading.asked(asked), [f64::NAN; 2], [f64::NAN; 2])
-        };
-        if !loading.holds(curve.largest.value) {
-            let (found, maximum) = (in_unit(curve.largest.value, "mm"), in_unit(loading.largest_approach(), "mm"));
-            return Err(format!(
-                "the gears approach by {found:.6} mm, but `corner_contact: exact` holds up to {maximum:.6} mm only"
-            ));
-        }
-        let peak_to_peak = curve.largest.value - curve.smallest.value;
-        let of_pressure = |get: fn(&LargestPressure) -> f64| curve.pressure.as_ref().map_or(f64::NAN, get);
+        let needs = Needs { harmonics: self.highest_order(), spans_for: harmonics, ..Needs::default() };
+        let needs = self.0.iter().fold(needs, |needs, measure| match measure.get {
+            Get::Quantity(quantity) => needs.and(quantity),
+            _ => needs,
+        });
+        let curve = loading.summary_of(needs);
+        loading.check_approach(curve.largest.value).map_err(|beyond| beyond.to_string())?;
         let mut numbers = Vec::with_capacity(self.0.len());
         for measure in &self.0 {
             let value = match measure.get {
-                Get::Mean => curve.mean,
-                Get::PeakToPeak => peak_to_peak,
-                Get::Maximum => curve.largest.value,
-                Get::Minimum => curve.smallest.value,
-                Get::Variance => curve.variance,
-                Get::ReciprocalVariance if curve.variance > 0.0 => 1.0 / curve.variance,
-                Get::ReciprocalVariance => f64::NAN,
-                Get::Unloaded => curve.unloaded_peak_to_peak,
-                Get::ContactRatio => of_pairs[0],
-                Get::LoadShare => of_pairs[1],
-                Get::Pressure => of_pressure(|largest| largest.extremum.value),
-                Get::PressurePosition => of_pressure(|largest| largest.extremum.position),
-                Get::PressureRoll => of_pressure(|largest| largest.roll_angle),
-                Get::PressureZ => of_pressure(|largest| largest.across.unwrap_or(f64::NAN)),
-                Get::PressureHalfWidth => of_pressure(|largest| largest.contact.half_width),
-                Get::RootStress(side) => of_roots[usize::from(side == Side::Gear)],
+                Get::Quantity(quantity) => (quantity.get)(&curve),
                 Get::Positions => settings.positions as f64,
                 Get::Slices => settings.slices as f64,
                 Get::ErrorEstimate => {
                     let sliced = loading.uses_slices();
                     let mut sampled = Sampled::new(sliced, Against::Coarser, &again);
-                    sampled.know(settings, peak_to_peak);
+                    sampled.know(settings, curve.peak_to_peak);
                     sampled.error(settings)
                 }
                 Get::Harmonic(order) => curve.harmonics[order - 1],
@@ -245,17 +172,5 @@ impl Measures {
             numbers.push(value);
         }
         Ok(numbers)
-    }
-}
-
-fn of_summary(summary: Summary) -> Found {
-    Found {
-        largest: summary.largest,
-        smallest: summary.smallest,
-        mean: summary.mean,
-        variance: summary.variance,
-        harmonics: summary.harmonics,
-        pressure: summary.largest_pressure,
-        unloaded_peak_to_peak: summary.unloaded_peak_to_peak,
     }
 }

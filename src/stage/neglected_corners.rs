@@ -8,10 +8,10 @@ use crate::stage::{Inputs, common};
 use declare::number::significant;
 use declare::units::in_unit;
 use gearmesh::gear::contact::CornerContact;
-use gearmesh::gear::transmission_error::asked::Asked;
 use gearmesh::gear::transmission_error::curve::{Point, Summary, Wanted};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
+use gearmesh::gear::transmission_error::needs::Needs;
 use gearmesh::gear::transmission_error::neglected_corners::NeglectedCorners;
 use studygraph::warning::{Cases, Warning};
 
@@ -101,14 +101,14 @@ impl<'a> WithoutCorners<'a> {
     /// Relative error of the peak-to-peak, by the same load case with corner contact, and a sentence about it; none where it is small.
     #[must_use]
     pub fn error(&self, loading: &LoadCase, remedy: &str) -> Option<(f64, String)> {
-        let with = loading.asked(Asked { integrals: true, ..Asked::default() });
+        let with = loading.summary_of(Needs { integrals: true, ..Needs::default() });
         let [before, after] = self.estimated.corners.lengths.map(|length| significant(in_unit(length, "mm"), 3));
         let touch = format!(
             "`corner_contact` is `none`, but the gears approach so far that tip corners touch up to {before} mm before A and \
              {after} mm after E"
         );
-        if !loading.holds(with.largest.value) {
-            let limit = significant(in_unit(loading.largest_approach(), "mm"), 3);
+        if let Err(beyond) = loading.check_approach(with.largest.value) {
+            let limit = significant(in_unit(beyond.largest.0, "mm"), 3);
             let sentence = format!(
                 "{touch}; the size of the error is unknown, since `corner_contact: exact` holds up to an approach of {limit} \
                  mm only"

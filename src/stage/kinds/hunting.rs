@@ -156,13 +156,9 @@ impl Stated {
             .collect::<Result<_, Failure>>()?;
         let found = Found { errors: parts.concat(), positions: self.positions, period: cycle.period() };
         let (loading, largest) = (loading(), found.maximum());
-        if !loading.holds(largest) {
-            let (found, maximum) = (in_unit(largest, "mm"), in_unit(loading.largest_approach(), "mm"));
-            return Err(Failure::new(format!(
-                "design `{name}` at {torque} N m: the gears approach by {found:.6} mm, but `corner_contact: exact` holds \
-                 up to {maximum:.6} mm only; beyond that a tip passes the other one, or a pair farther out would touch"
-            )));
-        }
+        loading
+            .check_approach(largest)
+            .map_err(|beyond| Failure::new(format!("design `{name}` at {torque} N m: {beyond}")))?;
         Ok(found)
     }
 

@@ -7,8 +7,8 @@ use super::passes::Found;
 use crate::stage::{Context, simpler};
 use declare::number::significant;
 use gearmesh::gear::modification::template::Fitted;
-use gearmesh::gear::transmission_error::asked::Asked;
 use gearmesh::gear::transmission_error::cycle::MeshCycle;
+use gearmesh::gear::transmission_error::needs::Needs;
 
 impl Optimizer {
     /// Says that long relief is as good as what was found, within what counts as a gain, where that has more parts or more
@@ -31,7 +31,7 @@ impl Optimizer {
     fn deflection(&self, found: &Found, fitted: &Fitted, cycle: &MeshCycle) -> Option<f64> {
         let design = fitted.design(&found.best.point).ok()?;
         let deflections =
-            self.of_cases((fitted, cycle), &design, |loading, _| loading.asked(Asked::default()).largest.value);
+            self.of_cases((fitted, cycle), &design, |loading, _| loading.summary_of(Needs::default()).largest.value);
         Some(deflections?.into_iter().fold(0.0, f64::max))
     }
 

@@ -9,7 +9,6 @@ use super::tables::Found;
 use super::{Named, Ste, pressures};
 use crate::stage::neglected_corners::Estimated;
 use declare::error::Failure;
-use declare::units::in_unit;
 use gearmesh::gear::transmission_error::curve::{Summary, Wanted};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::doubt::Doubt;
@@ -88,13 +87,9 @@ impl Ste {
             None => loading.with_positions(settings.positions),
         };
         let (points, summary) = loading.curve_and_summary(wanted.of_curve);
-        if !loading.holds(summary.largest.value) {
-            let (found, maximum) = (in_unit(summary.largest.value, "mm"), in_unit(loading.largest_approach(), "mm"));
-            return Err(Failure::new(format!(
-                "design `{name}` at {torque} N m: the gears approach by {found:.6} mm, but `corner_contact: exact` holds \
-                 up to {maximum:.6} mm only; beyond that a tip passes the other one, or a pair farther out would touch"
-            )));
-        }
+        loading
+            .check_approach(summary.largest.value)
+            .map_err(|beyond| Failure::new(format!("design `{name}` at {torque} N m: {beyond}")))?;
         if self.accuracy.is_none() {
             sampled.know(settings, summary.peak_to_peak);
         }

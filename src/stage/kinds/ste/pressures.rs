@@ -8,7 +8,8 @@ use crate::stage::{Context, Demand};
 use gearmesh::gear::transmission_error::cycle::MeshCycle;
 use gearmesh::gear::transmission_error::face_map::Cell;
 use gearmesh::gear::transmission_error::load_case::LoadCase;
-use gearmesh::gear::transmission_error::pressure::{Cornered, LargestPressure, LineContact};
+use gearmesh::gear::transmission_error::pressure::{Cornered, LineContact};
+use gearmesh::gear::transmission_error::quantities::{Need, QUANTITIES};
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
 use studygraph::warning::{Cases, Warning};
@@ -49,16 +50,9 @@ const PAIRS: [OfPair; 7] = pairs![
 /// The contacts of all pairs of a position, as [`PAIRS`] has them.
 pub type Contacts = [LineContact; PAIRS.len()];
 
-/// Columns of the summary that take the pressure at every position.
-const OF_SUMMARY: [&str; 7] = [
-    summary::LARGEST_PRESSURE,
-    "pressure_position",
-    "pressure_roll_angle",
-    "pressure_pair",
-    "pressure_z",
-    "pressure_half_width",
-    "corner_load_share",
-];
+/// Columns of the summary beside those of [`QUANTITIES`].
+const PAIR: &str = "pressure_pair";
+const CORNER: &str = "corner_load_share";
 
 /// Whether anything that is demanded takes the contacts of all pairs of a curve.
 pub fn of_pairs_are_wanted(demand: &Demand) -> bool {
@@ -68,42 +62,27 @@ pub fn of_pairs_are_wanted(demand: &Demand) -> bool {
 
 /// Whether anything that is demanded takes the pressure at every position.
 pub fn are_wanted(demand: &Demand) -> bool {
-    OF_SUMMARY.iter().any(|name| demand.column(summary::TABLE, name))
+    let of_curve = QUANTITIES.iter().filter(|quantity| quantity.need == Need::Pressure).map(|quantity| quantity.name);
+    of_curve.chain([PAIR, CORNER]).any(|name| demand.column(summary::TABLE, name))
         || demand.column(curve::TABLE, curve::PRESSURE)
         || of_pairs_are_wanted(demand)
         || demand.table(TABLE)
 }
 
-/// The largest pressure, where it is, and how much is on sharp corners.
-pub fn of_summary(columns: Columns<Keyed<'_>>) -> Columns<Keyed<'_>> {
-    let of = |get: fn(&LargestPressure) -> f64| {
-        move |row: &Keyed| row.2.summary.largest_pressure.as_ref().map_or(f64::NAN, get)
-    };
-    let [pressure, position, roll_angle, pair, z, half_width, corner] = OF_SUMMARY;
-    let about_roll = "The pinion's roll angle at that place; NaN without load.";
-    let about_pair = "How many pitches that pair is ahead of the newest inside the path of contact; -1 before A.";
-    let about_z = "Where across the face, from its middle; NaN where it is the same all across.";
-    let about_corner =
+/// The pair with the largest pressure.
+pub fn of_pair(columns: Columns<Keyed<'_>>) -> Columns<Keyed<'_>> {
+    let about = "How many pitches that pair is ahead of the newest inside the path of contact; -1 before A.";
+    columns
+        .integer(PAIR, about, |row: &Keyed| row.2.summary.largest_pressure.map_or(0, |largest| largest.ahead))
+        .but(Column::on_demand)
+}
+
+/// The load on sharp corners.
+pub fn of_corner(columns: Columns<Keyed<'_>>) -> Columns<Keyed<'_>> {
+    let about =
         "Largest share of the load on a pair that the sharp corner of a tip touches: the pressure is infinite there.";
     columns
-        .float(pressure, "MPa", "Largest pressure in the mesh cycle.", of(|largest| largest.extremum.value))
-        .but(Column::on_demand)
-        .float(
-            position,
-            "mm",
-            "Distance from where a pair starts contact, where that is.",
-            of(|largest| largest.extremum.position),
-        )
-        .but(|column| column.on_demand().tolerance(1e-6, 1e-9))
-        .float(roll_angle, "deg", about_roll, of(|largest| largest.roll_angle))
-        .but(|column| column.on_demand().allows_nan().tolerance(1e-4, 1e-9))
-        .integer(pair, about_pair, |row| row.2.summary.largest_pressure.map_or(0, |largest| largest.ahead))
-        .but(Column::on_demand)
-        .float(z, "mm", about_z, of(|largest| largest.across.unwrap_or(f64::NAN)))
-        .but(|column| column.on_demand().allows_nan().tolerance(1e-6, 1e-9))
-        .float(half_width, "um", "Half the width of the contact there.", of(|largest| largest.contact.half_width))
-        .but(|column| column.on_demand().tolerance(1e-3, 1e-6))
-        .float(corner, "", about_corner, |row| row.2.cornered.as_ref().map_or(0.0, |cornered| cornered.share))
+        .float(CORNER, "", about, |row: &Keyed| row.2.cornered.as_ref().map_or(0.0, |cornered| cornered.share))
         .but(|column| column.on_demand().tolerance(1e-9, 1e-6))
 }
 

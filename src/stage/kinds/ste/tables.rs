@@ -11,6 +11,7 @@ use crate::stage::names;
 use gearmesh::gear::geometry::Side;
 use gearmesh::gear::transmission_error::curve::Point;
 use gearmesh::gear::transmission_error::doubt::Doubt;
+use gearmesh::gear::transmission_error::quantities::{Need, QUANTITIES, Quantity};
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
 
@@ -43,30 +44,21 @@ pub fn keyed<'a, T>(name: &str, description: &str, stated: &[usize]) -> Columns<
 
 /// Those of friction are there where it is stated.
 pub fn summary<'a>(stated: &[usize], rubs: bool) -> Columns<Keyed<'a>> {
-    let mean = "Integral mean of the transmission error over the mesh cycle.";
-    let variance = "Integral mean of the squared deviation from the mean.";
-    let reciprocal = "f = 1/variance (mei2016, equation 16); NaN where nothing varies.";
     let slices = "Slices that were used on each stretch of the face without a closed form.";
     let error = "Estimated relative error of the peak-to-peak from positions and slices.";
-    let columns = keyed(names::summary::TABLE, "What each curve of the transmission error amounts to.", stated)
-        .float("mean", "um", mean, |row: &Keyed| row.2.summary.mean)
-        .float("peak_to_peak", "um", "Largest less smallest transmission error.", |row| row.2.summary.peak_to_peak)
-        .but(|column| column.tolerance(1e-12, 1e-9))
-        .float("maximum", "um", "Largest transmission error.", |row| row.2.summary.largest.value)
-        .float("minimum", "um", "Smallest transmission error.", |row| row.2.summary.smallest.value)
-        .float("variance", "um^2", variance, |row| row.2.summary.variance)
-        .but(|column| column.tolerance(1e-15, 1e-9))
-        .float("reciprocal_variance", "1/um^2", reciprocal, |row| row.2.summary.reciprocal_variance.unwrap_or(f64::NAN))
-        .but(|column| column.allows_nan().tolerance(0.0, 1e-8))
-        .float("unloaded_peak_to_peak", "um", "The same without load.", |row| row.2.summary.unloaded_peak_to_peak)
-        .but(|column| column.tolerance(1e-12, 1e-9))
-        .float("loaded_contact_ratio", "", "Mean number of pairs that carry load.", |row| {
-            row.2.summary.loaded_contact_ratio
-        })
-        .float("largest_load_share", "", "Largest share of the load on one pair.", |row| {
-            row.2.summary.largest_load_share
-        });
-    let columns = of_doubt(GEARS.into_iter().fold(pressures::of_summary(columns), of_root));
+    let columns = keyed(names::summary::TABLE, "What each curve of the transmission error amounts to.", stated);
+    let columns = QUANTITIES.iter().fold(columns, |columns, quantity| {
+        let columns = of_curve_summary(columns, quantity);
+        // Columns beside these that are not numbers of the curve alone.
+        match quantity.name {
+            "pressure_roll_angle" => pressures::of_pair(columns),
+            "pressure_half_width" => pressures::of_corner(columns),
+            names::summary::ROOT_STRESS_ERROR_PINION => of_iso6336(columns, Side::Pinion),
+            names::summary::ROOT_STRESS_ERROR_GEAR => of_iso6336(columns, Side::Gear),
+            _ => columns,
+        }
+    });
+    let columns = of_doubt(columns);
     let columns = if rubs { friction::of_summary(columns) } else { columns };
     columns
         .integer("positions", "Positions per base pitch that were used.", |row| row.2.settings.positions)
@@ -87,56 +79,29 @@ fn of_doubt(columns: Columns<Keyed<'_>>) -> Columns<Keyed<'_>> {
         .but(|column| column.on_demand().allows_nan().tolerance(1e-6, 1e-9))
 }
 
-/// What the summary has of a gear's root.
-#[derive(Clone, Copy)]
-struct OfGear {
-    side: Side,
-    stress: &'static str,
-    position: &'static str,
-    radius: &'static str,
-    error: &'static str,
-    iso6336: &'static str,
+/// The column of a quantity.
+fn of_curve_summary<'a>(columns: Columns<Keyed<'a>>, quantity: &'static Quantity) -> Columns<Keyed<'a>> {
+    columns.float(quantity.name, quantity.unit, quantity.description, |row: &Keyed| (quantity.get)(&row.2.summary)).but(
+        |column| {
+            let column = match quantity.tolerance {
+                Some([absolute, relative]) => column.tolerance(absolute, relative),
+                None => column,
+            };
+            let column = if quantity.allows_nan { column.allows_nan() } else { column };
+            if matches!(quantity.need, Need::Pressure | Need::RootStress) { column.on_demand() } else { column }
+        },
+    )
 }
 
-const GEARS: [OfGear; 2] = [
-    OfGear {
-        side: Side::Pinion,
-        stress: names::summary::LARGEST_ROOT_STRESS_PINION,
-        position: names::summary::ROOT_STRESS_POSITION_PINION,
-        radius: names::summary::ROOT_STRESS_RADIUS_PINION,
-        error: names::summary::ROOT_STRESS_ERROR_PINION,
-        iso6336: names::summary::ISO6336_ROOT_STRESS_PINION,
-    },
-    OfGear {
-        side: Side::Gear,
-        stress: names::summary::LARGEST_ROOT_STRESS_GEAR,
-        position: names::summary::ROOT_STRESS_POSITION_GEAR,
-        radius: names::summary::ROOT_STRESS_RADIUS_GEAR,
-        error: names::summary::ROOT_STRESS_ERROR_GEAR,
-        iso6336: names::summary::ISO6336_ROOT_STRESS_GEAR,
-    },
-];
-
-/// Largest root stress of a gear, where it is, and what the standard has for it.
-fn of_root(columns: Columns<Keyed<'_>>, gear: OfGear) -> Columns<Keyed<'_>> {
-    let (name, at) = (gear.side.name(), usize::from(gear.side == Side::Gear));
-    let found = move |row: &Keyed| row.2.summary.largest_root_stress.map(|of_gears| of_gears[at]);
-    let stress = format!("Largest tensile stress at the roots of the {name}'s teeth in the mesh cycle.");
-    let position = format!("Distance from where a pair starts contact, where the {name}'s root stress is largest.");
-    let radius = format!("Radius of the place on the {name}'s root; NaN without load.");
-    let error = format!("Estimated error of the {name}'s root stresses by its mesh.");
+/// The root stress of a gear by the standard.
+fn of_iso6336(columns: Columns<Keyed<'_>>, side: Side) -> Columns<Keyed<'_>> {
+    let (name, at, column) = match side {
+        Side::Pinion => ("pinion", 0, names::summary::ISO6336_ROOT_STRESS_PINION),
+        Side::Gear => ("gear", 1, names::summary::ISO6336_ROOT_STRESS_GEAR),
+    };
     let iso = format!("Nominal root stress σ_F0 of the {name} by ISO 6336-3, method B; NaN outside its ranges.");
     columns
-        .float(gear.stress, "MPa", &stress, move |row| found(row).map_or(f64::NAN, |root| root.extremum.value))
-        .but(Column::on_demand)
-        .float(gear.position, "mm", &position, move |row| found(row).map_or(f64::NAN, |root| root.extremum.position))
-        .but(|column| column.on_demand().tolerance(1e-6, 1e-9))
-        .float(gear.radius, "mm", &radius, move |row| found(row).map_or(f64::NAN, |root| root.radius))
-        .but(|column| column.on_demand().allows_nan().tolerance(1e-6, 1e-9))
-        .float(gear.error, "%", &error, move |row| found(row).map_or(f64::NAN, |root| root.error_estimate))
-        // The difference of two stresses.
-        .but(|column| column.on_demand().tolerance(1e-7, 1e-9))
-        .float(gear.iso6336, "MPa", &iso, move |row| row.2.iso6336[at])
+        .float(column, "MPa", &iso, move |row: &Keyed| row.2.iso6336[at])
         .but(|column| column.on_demand().allows_nan())
 }
 

@@ -100,13 +100,7 @@ fn pairs(built: &Built, position: f64, count: usize) -> Pairs<'_> {
 pub(super) fn check(case: &Case, built: &Built, findings: &mut Vec<Finding>) -> Result<[f64; 2], String> {
     let loading = LoadCase::new(&built.cycle, &built.design, case.torque);
     let (points, summary) = loading.curve_and_summary(Wanted { harmonics: 3, pressure: true, ..Wanted::default() });
-    let maximum = loading.largest_approach();
-    if !loading.holds(summary.largest.value) {
-        return Err(format!(
-            "the gears approach by {:e} m, corner contact is modelled up to {maximum:e} m",
-            summary.largest.value
-        ));
-    }
+    loading.check_approach(summary.largest.value).map_err(|beyond| beyond.to_string())?;
     let numbers = points.iter().flat_map(|point| {
         let pressure = point.pressed.map_or(0.0, |pressed| pressed.largest);
         let own = [point.transmission_error, point.unloaded_transmission_error, point.secant_stiffness, pressure];

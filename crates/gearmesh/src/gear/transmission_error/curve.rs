@@ -2,6 +2,7 @@
 //!
 //! Must not know: tables, units other than SI.
 
+use super::beyond_model::BeyondModel;
 use super::load_case::{Equilibrium, LoadCase, OUT_OF_REACH};
 use super::pressure::{LargestPressure, Pressed};
 use super::root_stress::LargestRootStress;
@@ -203,7 +204,17 @@ impl LoadCase<'_> {
     /// The peak-to-peak transmission error \[m\], infinite beyond the model: the lean path for optimisers.
     #[must_use]
     pub fn peak_to_peak(&self) -> f64 {
-        if self.force.is_finite() { self.between(self.for_values().extremes()) } else { f64::INFINITY }
+        if self.force.is_finite() { self.checked_peak_to_peak().unwrap_or(f64::INFINITY) } else { f64::INFINITY }
+    }
+
+    /// The peak-to-peak transmission error \[m\].
+    ///
+    /// # Errors
+    /// If the gears approach by more than is modelled.
+    pub fn checked_peak_to_peak(&self) -> Result<f64, BeyondModel> {
+        let [largest, smallest] = self.for_values().extremes();
+        self.check_approach(largest.value)?;
+        Ok(largest.value - smallest.value)
     }
 
     /// The largest and the smallest transmission error.
@@ -214,7 +225,7 @@ impl LoadCase<'_> {
     }
 
     pub(super) fn between(&self, [largest, smallest]: [Extremum; 2]) -> f64 {
-        if self.holds(largest.value) { largest.value - smallest.value } else { f64::INFINITY }
+        if self.check_approach(largest.value).is_ok() { largest.value - smallest.value } else { f64::INFINITY }
     }
 
     /// Adds the points of the extrema, under load and without, so that a curve spans what its summary says.
@@ -246,7 +257,7 @@ impl LoadCase<'_> {
             return f64::INFINITY;
         }
         let trace = self.trace();
-        if !trace.spans.iter().flat_map(|(_, values)| values).all(|value| self.holds(*value)) {
+        if !trace.spans.iter().flat_map(|(_, values)| values).all(|value| self.check_approach(*value).is_ok()) {
             return f64::INFINITY;
         }
         harmonics::mean_and_variance(self.cycle.period(), &trace.nodes(&self.cycle.rows)).1

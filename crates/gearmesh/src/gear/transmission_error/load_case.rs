@@ -5,6 +5,7 @@
 use std::sync::Arc;
 
 use super::apart::Apart;
+use super::beyond_model::BeyondModel;
 use super::count::Count;
 use super::cycle::{Elasticity, MeshCycle};
 use super::flanks::Flanks;
@@ -13,6 +14,7 @@ use super::sliced::Sliced;
 use super::within_reach::WithinReach;
 use crate::gear::contact::CornerContact;
 use crate::gear::contact::flattening::InSeries;
+use crate::gear::geometry::error::Millimetres;
 use crate::gear::modification::Design;
 use crate::numeric::complementarity::{Balance, MOST_SPRINGS, PerSpring};
 use crate::numeric::logarithm::Known;
@@ -220,16 +222,18 @@ impl<'a> LoadCase<'a> {
             || (!self.flanks.is_flat() && matches!(self.cycle.elasticity, Elasticity::Logarithmic { .. }))
     }
 
-    /// Whether an approach is within the model: with corner contact, below the gap at which a pair that is no longer
-    /// considered would touch, or a tip would pass the other one.
-    #[must_use]
-    pub fn holds(&self, transmission_error: f64) -> bool {
-        transmission_error <= self.largest_approach()
+    /// Checks that an approach \[m\] is within the model.
+    ///
+    /// # Errors
+    /// With corner contact, if a pair that is no longer considered would touch, or a tip would pass the other one.
+    pub fn check_approach(&self, approach: f64) -> Result<(), BeyondModel> {
+        let largest = self.largest_approach();
+        let beyond = || BeyondModel { approach: Millimetres(approach), largest: Millimetres(largest) };
+        if approach <= largest { Ok(()) } else { Err(beyond()) }
     }
 
     /// The largest approach that is modelled \[m\].
-    #[must_use]
-    pub fn largest_approach(&self) -> f64 {
+    pub(super) fn largest_approach(&self) -> f64 {
         match self.touching {
             Touching::LineOfAction => f64::INFINITY,
             Touching::Anywhere { limit, .. } => limit,

@@ -6,7 +6,7 @@
 
 mod across;
 mod apart;
-pub mod asked;
+pub mod beyond_model;
 mod change;
 mod closed;
 mod count;
@@ -19,10 +19,12 @@ mod flanks;
 pub mod friction;
 pub mod hunting;
 pub mod load_case;
+pub mod needs;
 pub mod neglected_corners;
 mod path;
 mod plain_pairs;
 pub mod pressure;
+pub mod quantities;
 pub mod root_stress;
 pub mod sampling;
 mod sharing;

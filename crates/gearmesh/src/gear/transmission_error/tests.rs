@@ -2,13 +2,13 @@
 
 #![allow(clippy::float_cmp)] // where a result must be exact, that is what is asked
 
-mod asked;
 mod broken_tips;
 mod corner;
 mod doubt;
 mod exchange;
 mod extremes;
 mod friction;
+mod needs;
 mod neglected_corners;
 mod plain;
 mod pressure;

@@ -1,36 +1,32 @@
-//! What is asked of a curve is what its summary has.
+//! A restricted summary agrees with the whole one.
 
-use super::super::asked::{Asked, Found};
+use super::super::needs::Needs;
 use super::*;
 use crate::gear::contact::CornerContact;
 use crate::gear::transmission_error::curve::Summary;
 
-const ALL: Asked = Asked { integrals: true, harmonics: 3, spans_for: 8, pressure: true, unloaded: true };
+const ALL: Needs = Needs {
+    integrals: true,
+    harmonics: 3,
+    spans_for: 8,
+    pressure: true,
+    unloaded: true,
+    load_sharing: false,
+    root_stress: false,
+};
 
-fn bits(found: &Found) -> [u64; 7] {
-    let pressure = found.pressure.map_or(0.0, |pressure| pressure.extremum.value);
+fn bits(found: &Summary) -> [u64; 7] {
+    let pressure = found.largest_pressure.map_or(0.0, |pressure| pressure.extremum.value);
     let values = [
         found.largest.value,
         found.smallest.value,
         found.mean,
         found.variance,
-        found.harmonics.iter().sum(),
+        found.harmonics.iter().take(3).sum(),
         pressure,
         found.unloaded_peak_to_peak,
     ];
     values.map(f64::to_bits)
-}
-
-fn of_summary(summary: &Summary) -> Found {
-    Found {
-        largest: summary.largest,
-        smallest: summary.smallest,
-        mean: summary.mean,
-        variance: summary.variance,
-        harmonics: summary.harmonics[..3].to_vec(),
-        pressure: summary.largest_pressure,
-        unloaded_peak_to_peak: summary.unloaded_peak_to_peak,
-    }
 }
 
 /// Tier: second method, to the last bit: another torque on gaps that were found for one, and gaps of its own.
@@ -48,7 +44,7 @@ fn another_torque_leaves_the_gaps_as_they_are() {
                         let (shared, own) =
                             (known.with_torque(torque(force)), LoadCase::new(&cycle, &design, torque(force)));
                         let case = format!("{corner_contact:?}, {first}, then {force}");
-                        assert_eq!(bits(&shared.asked(ALL)), bits(&own.asked(ALL)), "{case}");
+                        assert_eq!(bits(&shared.summary_of(ALL)), bits(&own.summary_of(ALL)), "{case}");
                         assert_eq!(shared.largest_approach().to_bits(), own.largest_approach().to_bits(), "{case}");
                     }
                 }
@@ -69,13 +65,18 @@ fn what_is_asked_is_what_the_summary_has() {
                 for force in [0.0, 300.0, 1867.0] {
                     let loading = LoadCase::new(&cycle, &design, torque(force));
                     let wanted = Wanted { harmonics: 8, pressure: true, ..Wanted::default() };
-                    let summary = of_summary(&loading.summary(wanted));
-                    assert_eq!(bits(&loading.asked(ALL)), bits(&summary), "{positions}, {force}");
+                    let summary = loading.summary(wanted);
+                    assert_eq!(bits(&loading.summary_of(ALL)), bits(&summary), "{positions}, {force}");
                     // What is left out changes nothing of the rest.
-                    let fewer = loading.asked(Asked { harmonics: 0, pressure: false, unloaded: false, ..ALL });
-                    let less = Found { harmonics: Vec::new(), pressure: None, unloaded_peak_to_peak: 0.0, ..summary };
+                    let fewer = loading.summary_of(Needs { harmonics: 0, pressure: false, unloaded: false, ..ALL });
+                    let less = Summary {
+                        harmonics: Vec::new(),
+                        largest_pressure: None,
+                        unloaded_peak_to_peak: f64::NAN,
+                        ..summary
+                    };
                     assert_eq!(bits(&fewer), bits(&less));
-                    let extremes = loading.asked(Asked::default());
+                    let extremes = loading.summary_of(Needs::default());
                     let apart = extremes.largest.value - extremes.smallest.value;
                     assert_eq!(apart.to_bits(), loading.peak_to_peak().to_bits());
                 }
