@@ -3,12 +3,14 @@
 //! A field that is added to one of these structs is a field of every kind that has it. Must not know: what any kind
 //! computes.
 
+use std::sync::Arc;
+
 use crate::stage::{Inputs, Omission, Port, Saved, compliance as codec, names, pair};
 use declare::Declared;
 use declare::declared::Words;
 use declare::error::{Diagnostic, Failure};
 use declare::record::Record;
-use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method};
+use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method, PairCompliance};
 use gearmesh::gear::contact::{CornerContact, MOST_COUPLED_SLICES, SliceCoupling};
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::geometry::root::RootShape;
@@ -132,9 +134,20 @@ pub fn mesh_cycle_ports(stiffness: &str) -> Vec<Port> {
 /// # Errors
 /// When a table is not what its schema says, or the pair cannot be loaded.
 pub fn mesh_cycle(inputs: &Inputs, settings: Settings) -> Result<(GearPair, MeshCycle), Failure> {
-    let (pair, compliance) = (pair::of(inputs)?, codec::of(inputs)?);
-    let cycle = MeshCycle::new(&pair, &compliance, settings)?;
-    Ok((pair, cycle))
+    let cycle = shared_mesh_cycle(inputs, settings)?;
+    Ok((cycle.pair.clone(), cycle.counted_separately()))
+}
+
+/// The same cycle, whose work is counted for all parts of a stage together.
+///
+/// # Errors
+/// As [`mesh_cycle`].
+pub fn shared_mesh_cycle(inputs: &Inputs, settings: Settings) -> Result<Arc<MeshCycle>, Failure> {
+    // The pair behind a stage of compliances is always the same, so both are kept with its table.
+    let derived = codec::table(inputs)?.derived();
+    let read = derived
+        .get(|_: &(GearPair, PairCompliance)| true, || Ok::<_, Failure>((pair::of(inputs)?, codec::of(inputs)?)))?;
+    derived.get(|cycle: &MeshCycle| cycle.settings == settings, || MeshCycle::new(&read.0, &read.1, settings))
 }
 
 /// That the pair cannot be loaded so, where its tables are there.

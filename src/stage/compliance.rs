@@ -212,6 +212,14 @@ pub fn port(stage: &str) -> Port {
     Port::tables(names::STIFFNESS_PORT, stage, &tables)
 }
 
+/// The table of the compliances.
+///
+/// # Errors
+/// If it did not come in.
+pub fn table<'a>(inputs: &Inputs<'a>) -> Result<&'a Table, Failure> {
+    inputs.table(names::STIFFNESS_PORT, names::compliance::TABLE)
+}
+
 /// The compliances that came in.
 ///
 /// # Errors

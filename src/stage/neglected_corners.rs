@@ -4,6 +4,8 @@
 //! A curve by itself says where corners would touch, and about how much that matters. Where it matters, one curve with corner
 //! contact says how much it does. Must not know: whose designs they are.
 
+use std::sync::Arc;
+
 use crate::stage::{Inputs, common};
 use declare::number::significant;
 use declare::units::in_unit;
@@ -139,9 +141,8 @@ impl<'a> WithoutCorners<'a> {
 /// The mesh cycle of the same inputs with corner contact; none where that is not modelled: a contact ratio too large for two
 /// more pairs, with which corners matter little.
 #[must_use]
-pub fn cycle(inputs: &Inputs, settings: Settings) -> Option<MeshCycle> {
-    let settings = Settings { corner_contact: CornerContact::Exact, ..settings };
-    common::mesh_cycle(inputs, settings).ok().map(|(_, cycle)| cycle)
+pub fn cycle(inputs: &Inputs, settings: Settings) -> Option<Arc<MeshCycle>> {
+    common::shared_mesh_cycle(inputs, Settings { corner_contact: CornerContact::Exact, ..settings }).ok()
 }
 
 /// By how much a value is too large or too small.

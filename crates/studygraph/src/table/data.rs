@@ -6,6 +6,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::content::Content;
+use super::derived::Derived;
 use super::schema::{Column, Schema, Type};
 use declare::digest::Digest;
 
@@ -198,12 +199,19 @@ pub struct Table {
     schema: Arc<Schema>,
     columns: Vec<Data>,
     rows: usize,
+    derived: Derived,
 }
 
 /// A row for [`Table::from_rows`]: cells in the order of the columns.
 pub type Row = Vec<Cell>;
 
 impl Table {
+    /// Objects that readers derived from it.
+    #[must_use]
+    pub fn derived(&self) -> &Derived {
+        &self.derived
+    }
+
     /// # Errors
     /// When a row does not fit the schema, a number is not finite where it must be, or a key repeats.
     pub fn from_rows(schema: Schema, rows: Vec<Row>) -> Result<Self, TableError> {
@@ -251,7 +259,7 @@ impl Table {
                 return Err(TableError::Column { column: column.name.clone(), table: schema.name.clone(), problem });
             }
         }
-        Self { schema, columns, rows }.sorted(1..rows)
+        Self { schema, columns, rows, derived: Derived::default() }.sorted(1..rows)
     }
 
     /// By key; `unsure` are the rows that may not come after the one before.
@@ -299,7 +307,7 @@ impl Table {
         let starts = parts.iter().scan(0, |end, part| Some(std::mem::replace(end, *end + part.rows)));
         let borders: Vec<usize> = starts.filter(|&row| row > 0 && row < rows).collect();
         let columns = Self::chained(parts)?;
-        Self { schema, columns, rows }.sorted(borders.into_iter()).map(Some)
+        Self { schema, columns, rows, derived: Derived::default() }.sorted(borders.into_iter()).map(Some)
     }
 
     /// The columns of several tables of one schema, one table after the other.

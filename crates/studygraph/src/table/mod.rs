@@ -5,6 +5,7 @@
 pub mod columns;
 pub mod content;
 pub mod data;
+mod derived;
 pub mod schema;
 pub mod select;
 pub mod tolerance;

@@ -292,6 +292,12 @@ impl MeshCycle {
         Self { settings, slices, ..self.clone() }
     }
 
+    /// A copy whose work is counted separately.
+    #[must_use]
+    pub fn counted_separately(&self) -> Self {
+        Self { work: Arc::default(), ..self.clone() }
+    }
+
     /// What was computed on this cycle so far, however sampled.
     #[must_use]
     pub fn work(&self) -> Work {
