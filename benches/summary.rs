@@ -72,7 +72,7 @@ pub fn print(processes: &[Process]) {
     }
 }
 
-/// What flanks as measured take, over the relief that they are traces of: at most 3.
+/// Time of sampled flanks over that of the relief that they are traces of.
 fn print_traces(found: &[Measured]) {
     println!("\nFlanks as measured, 500 points, over a parabolic relief: median and fastest\n");
     for Measured { name, median, fastest, .. } in found.iter().filter(|one| one.name.starts_with("measured/")) {
