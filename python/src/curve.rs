@@ -275,6 +275,7 @@ pub fn transmission_error(
                 peak_to_peak,
                 mean,
                 estimated,
+                deviations: "",
             });
             (points, Some(summary), largest)
         } else {

@@ -10,6 +10,7 @@ pub mod draw;
 pub mod embedded;
 mod engine;
 mod events;
+pub mod format;
 mod gc;
 mod help;
 mod json;

@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::progress::plain;
+use super::format::plain;
 use crate::report;
 use crate::report::{comparison, text as as_text};
 use studygraph::history::side::published;

@@ -4,7 +4,7 @@
 
 use serde_json::json;
 
-use super::progress::{duration, rough};
+use super::format::{duration, rough};
 use crate::stage::{Omission, RowCount, omission};
 use studygraph::runner::foresee::Expected;
 use studygraph::runner::plan::{Action, Plan};

@@ -12,9 +12,10 @@ use serde_json::{Value, json};
 
 use super::arguments::{self, Places, Selection};
 use super::events::{self, Lines};
+use super::format::duration;
 use super::pages::{self, Counts};
 use super::plan::{plan_json, plan_text};
-use super::progress::{self, Watcher, duration, out, tell};
+use super::progress::{self, Watcher, out, tell};
 use super::scratch::Scratch;
 use super::signals::stop_flag;
 use super::{Ending, draw, json, studies};

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value as Json, json};
 
 use super::arguments::{Limits, Output, Places, Selection, Sharding};
-use super::progress::{self, Watcher, duration, out, rough};
+use super::format::{duration, rough};
+use super::progress::{self, Watcher, out};
 use super::scratch::Scratch;
 use super::signals::stop_flag;
 use super::studies::load_all;

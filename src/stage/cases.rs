@@ -6,8 +6,9 @@
 
 use declare::declared::goes_with;
 use declare::error::{Diagnostic, Failure};
+use declare::number::significant;
 use declare::record::Record;
-use declare::units::{LENGTH, RATIO, TORQUE};
+use declare::units::{LENGTH, RATIO, TORQUE, in_unit};
 use declare::{Declared, Words};
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::misalignment::ShaftParallelism;
@@ -123,6 +124,15 @@ pub struct Deviation {
 }
 
 impl Deviation {
+    /// The deviations that are not 0, as they stand behind a torque: `, helix_slope 20 um`.
+    pub fn words(&self) -> String {
+        let stated = DEVIATIONS.iter().zip(&self.of_fields).filter(|(_, amount)| **amount != 0.0);
+        let word = |((name, _), amount): (&(&str, &str), &f64)| {
+            format!(", {name} {} um", significant(in_unit(*amount, "um"), 6))
+        };
+        stated.map(word).collect::<Vec<_>>().concat()
+    }
+
     /// A design as it is made and mounted.
     ///
     /// # Errors

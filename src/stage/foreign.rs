@@ -9,7 +9,7 @@ mod remedies;
 pub use remedies::DERIVED;
 
 use german::GERMAN;
-use remedies::{half_of, of_diametral_pitch, of_force, of_gear_torque, of_power, twice};
+use remedies::{half_of, of_diametral_pitch, of_force, of_gear_torque, of_power, of_tip_alteration, twice};
 use studygraph::program::Foreign;
 
 const GEARS: &[&str] = &["pinion", "gear"];
@@ -58,6 +58,10 @@ const fn pitch(word: &'static str) -> Foreign {
     Foreign { remedy: Some(of_diametral_pitch), ..other(word, "module", remark) }
 }
 
+const fn tip_alteration(word: &'static str) -> Foreign {
+    Foreign { remedy: Some(of_tip_alteration), ..within(GEARS, other(word, "tip_shortening", TIP_ALTERATION)) }
+}
+
 const fn backlash(word: &'static str) -> Foreign {
     other(word, "tooth_thickness", BACKLASH)
 }
@@ -93,6 +97,8 @@ const SPUR: &str = "spur gears only: there is no helix, and every section is the
 const STATIC: &str = "the pair is computed at rest: there is no speed, no mass and no damping";
 const SPEED: &str = "the pair is loaded by its `torque` alone; friction and `kind: rating` take a `speed`";
 const EXTERNAL: &str = "pairs of external gears only: neither internal gears nor planets are modelled";
+const TIP_ALTERATION: &str =
+    "the tip alteration coefficient k of ISO 21771 is negative where the tip is shortened: tip_shortening = -k";
 const GEAR_TORQUE: &str = "that on the pinion, T_pinion = T_gear z1/z2";
 const PINION: &str = "that on the pinion";
 const DRIVER: &str = "that on the pinion, whichever gear drives; of a torque on the gear T_pinion = T_gear z1/z2";
@@ -204,7 +210,9 @@ static ENGLISH: &[Foreign] = &[
     none("epsilon_alpha", COMPUTED),
     none("c_gamma", STIFFNESS),
     none("mesh_stiffness", STIFFNESS),
-    word("k", "tip_shortening"),
+    tip_alteration("k"),
+    tip_alteration("tip_alteration"),
+    tip_alteration("tip_alteration_coefficient"),
     word("h_ap", "addendum"),
     word("h_fp", "dedendum"),
     word("addendum_coefficient", "addendum"),

@@ -66,6 +66,8 @@ pub struct WithoutCorners<'a> {
     pub mean: f64,
     /// The corners that are left out.
     pub estimated: Estimated,
+    /// The deviations of the load case, as they stand behind its torque; empty without any.
+    pub deviations: &'a str,
 }
 
 impl<'a> WithoutCorners<'a> {
@@ -74,7 +76,7 @@ impl<'a> WithoutCorners<'a> {
     pub fn of(name: &'a str, torque: f64, loading: &LoadCase) -> Option<Self> {
         let (points, summary) = loading.curve_and_summary(Wanted::default());
         let estimated = Estimated::of(loading, &points, &summary)?;
-        Some(Self { name, torque, peak_to_peak: summary.peak_to_peak, mean: summary.mean, estimated })
+        Some(Self { name, torque, peak_to_peak: summary.peak_to_peak, mean: summary.mean, estimated, deviations: "" })
     }
 
     /// Whether a curve with corner contact is worth while.
@@ -94,10 +96,15 @@ impl<'a> WithoutCorners<'a> {
     /// What the curve of the same load case with corner contact changes; none where that is little. `remedy` ends the sentence.
     #[must_use]
     pub fn compared(&self, loading: &LoadCase, remedy: &str) -> Option<Warning> {
-        let Self { name, torque, .. } = *self;
-        let (size, sentence) = self.error(loading, remedy)?;
-        let sentence = format!("design `{name}` at {torque} N m: {sentence}");
-        Some(Warning::Cases(Cases::one(ABOUT, name, (torque, "N m"), (size, sentence))))
+        self.error(loading, remedy).map(|(size, sentence)| self.warning(size, &sentence))
+    }
+
+    /// The warning of an error.
+    #[must_use]
+    pub fn warning(&self, size: f64, sentence: &str) -> Warning {
+        let Self { name, torque, deviations, .. } = *self;
+        let sentence = format!("design `{name}` at {torque} N m{deviations}: {sentence}");
+        Warning::Cases(Cases::one(ABOUT, name, (torque, "N m"), (size, sentence)))
     }
 
     /// Relative error of the peak-to-peak, by the same load case with corner contact, and a sentence about it; none where it is small.

@@ -5,7 +5,7 @@
 use super::{
     BACKLASH, CLEARANCE, COMPUTED, EXTERNAL, HARDNESS, QUALITY, RACK, RATIO, REFERENCE, ROOT, SPEED, SPUR, STATIC,
     WORKING, backlash, clearance, fillet, grade, half, hardness, none, other, power, tangential_force, thickness,
-    within, word,
+    tip_alteration, within, word,
 };
 use studygraph::program::Foreign;
 
@@ -27,7 +27,8 @@ pub static GERMAN: &[Foreign] = &[
     half("Kopfkreisdurchmesser", "tip_radius"),
     half("Außendurchmesser", "tip_radius"),
     word("Kopfkürzung", "tip_shortening"),
-    word("Kopfhöhenänderung", "tip_shortening"),
+    tip_alteration("Kopfhöhenänderung"),
+    tip_alteration("Kopfhöhenänderungsfaktor"),
     other("Fußkreis", "rack", ROOT),
     other("Fußkreisdurchmesser", "rack", ROOT),
     none("Teilkreis", REFERENCE),

@@ -71,6 +71,14 @@ pub fn of_power(around: &Around) -> Option<String> {
     Some(format!("{power} kW at {speed} rpm of the pinion: write `torque: {}`", shown(torque, "N m")))
 }
 
+/// The tip shortening in modules, -k.
+pub fn of_tip_alteration(around: &Around) -> Option<String> {
+    let read = around.value?;
+    let factor =
+        if read.dimension == LENGTH { read.value / si((around.anywhere)(&["module"]), LENGTH)? } else { read.value };
+    Some(format!("write `{}`", significant(-factor, 6)))
+}
+
 /// T = F m z1/2.
 pub fn of_force(around: &Around) -> Option<String> {
     let force = si(around.value, FORCE)?;

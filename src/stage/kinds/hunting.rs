@@ -29,6 +29,9 @@ use studygraph::stage::steps::Steps;
 use studygraph::table::data::{Cell, Table, TableError};
 use studygraph::table::schema::Schema;
 
+/// The curves that the warning of corners compares.
+const MEAN_TEETH: &str = ", without the deviations of single teeth";
+
 pub const KIND: Kind = Kind {
     name: "hunting",
     version: 1,
@@ -180,7 +183,8 @@ impl Stated {
         let Some(exact) = neglected_corners::cycle(inputs, self.settings()) else { return };
         let (_, design, torque) = &tasks[worst];
         let loading = LoadCase::new(&exact, design, *torque);
-        if let Some(warning) = without[worst].and_then(|without| without.compared(&loading, REMEDY)) {
+        let mean = without[worst].map(|without| WithoutCorners { deviations: MEAN_TEETH, ..without });
+        if let Some(warning) = mean.and_then(|without| without.compared(&loading, REMEDY)) {
             (context.warn)(warning);
         }
     }

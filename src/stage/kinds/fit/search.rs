@@ -41,7 +41,7 @@ impl Solution {
 
     /// Whether inputs that a stage refuses ended the search.
     pub fn is_at_edge(&self) -> bool {
-        self.fit.beyond.is_some() || self.fit.end == End::Stopped
+        self.fit.beyond.is_some()
     }
 
     /// √(Σr²/freedom), in tolerances; NaN where there are no more residuals than parameters.

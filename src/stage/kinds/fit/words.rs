@@ -75,8 +75,9 @@ pub fn said(found: &Found, parameters: &[ParameterRow], flat: &str, refused: &st
     }
     if best.fit.end == End::Stopped {
         is_warning = true;
-        sentences
-            .push("its search was stopped there: whether values along the edge are nearer is not known".to_owned());
+        sentences.push(
+            "its search stopped at refused values: whether other values beside them are nearer is not known".to_owned(),
+        );
     } else if !best.is_settled() {
         is_warning = true;
         sentences.push(format!("the best has not settled after {}", count(best.fit.steps, "step")));

@@ -17,6 +17,13 @@ const LARGE_APPROACH: f64 = 0.5;
 /// An estimated error of the peak-to-peak that is told although nobody asked for an accuracy.
 const POOR: f64 = 0.01;
 
+/// Most curves with corner contact that are computed to state the error of leaving it out.
+const MAX_COMPARED: usize = 8;
+
+/// Ends a warning of corners where friction takes part in the load balance.
+const REMEDY_OF_FRICTION: &str = "all of it without friction in the load balance, which `corner_contact: exact` does not have: leave out \
+     `in_load_balance` and set `corner_contact: exact`";
+
 impl Ste {
     /// Of approaches that no linear model is for, of contacts that no law is for, and of accuracies that were not reached.
     pub fn warn(&self, context: &Context, answers: &[Keyed], module: f64) {
@@ -65,25 +72,46 @@ impl Ste {
         answers: &[Keyed],
         tasks: &[(&Named, f64)],
     ) {
+        let deviations: Vec<String> = answers.iter().map(|(_, load, _)| load.deviation.words()).collect();
         let without: Vec<Option<WithoutCorners>> = answers
             .iter()
-            .map(|(name, Load { torque, .. }, answer)| {
+            .zip(&deviations)
+            .map(|((name, Load { torque, .. }, answer), deviations)| {
                 let (peak_to_peak, mean) = (answer.summary.peak_to_peak, answer.summary.mean);
-                let of = |estimated| WithoutCorners { name, torque: *torque, peak_to_peak, mean, estimated };
+                let of =
+                    |estimated| WithoutCorners { name, torque: *torque, peak_to_peak, mean, estimated, deviations };
                 answer.left_out.map(of)
             })
             .collect();
-        let Some(worst) = WithoutCorners::worst(&without) else { return };
-        let (((design, ..), torque), settings) = (tasks[worst], answers[worst].2.settings);
-        // Friction at a corner is in no balance: both curves are then without.
-        let compared = if self.is_resisted() {
-            WithoutCorners::of(answers[worst].0, torque, &LoadCase::new(&base.sampled(settings), design, torque))
-        } else {
-            without[worst]
-        };
-        let Some(cycle) = neglected_corners::cycle(inputs, settings) else { return };
-        let found = compared.and_then(|without| without.compared(&LoadCase::new(&cycle, design, torque), REMEDY));
-        if let Some(warning) = found {
+        // The estimate ranks curves with the same deviations; between deviations the curves with corner contact decide.
+        let change = |index: &usize| without[*index].map_or(0.0, |one| one.estimated.change);
+        let mut compared: Vec<usize> = Vec::new();
+        for index in (0..answers.len()).filter(|index| without[*index].is_some_and(|one| one.may_matter())) {
+            let deviation = |index: usize| answers[index].1.deviation;
+            match compared.iter_mut().find(|other| deviation(**other) == deviation(index)) {
+                Some(other) if change(&index) > change(other) => *other = index,
+                Some(_) => {}
+                None => compared.push(index),
+            }
+        }
+        compared.sort_by(|one, two| change(two).total_cmp(&change(one)).then(one.cmp(two)));
+        compared.truncate(MAX_COMPARED);
+        let found = compared.into_iter().filter_map(|index| {
+            let (((design, ..), torque), settings) = (tasks[index], answers[index].2.settings);
+            // Friction at a corner is not modelled: both curves are without.
+            let (without, remedy) = if self.is_resisted() {
+                let cycle = base.sampled(settings);
+                let loading = LoadCase::new(&cycle, design, torque);
+                let without = WithoutCorners::of(answers[index].0, torque, &loading)?;
+                (WithoutCorners { deviations: &deviations[index], ..without }, REMEDY_OF_FRICTION)
+            } else {
+                (without[index]?, REMEDY)
+            };
+            let cycle = neglected_corners::cycle(inputs, settings)?;
+            let (size, sentence) = without.error(&LoadCase::new(&cycle, design, torque), remedy)?;
+            Some((size, without.warning(size, &sentence)))
+        });
+        if let Some((_, warning)) = found.reduce(|worst, other| if other.0 > worst.0 { other } else { worst }) {
             (context.warn)(warning);
         }
     }

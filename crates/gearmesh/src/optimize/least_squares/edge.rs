@@ -89,7 +89,9 @@ impl Search {
             let Some((place, residuals, is_whole)) = found else {
                 let way = if normals.is_empty() { step } else { outward(&normals, origin.len()) };
                 let beyond = admitted.refused(&origin, &way)?;
-                return Ok(if is_little { Along::Least(beyond) } else { Along::Stopped(beyond) });
+                // No edge is near, no step leads lower, nor does any direction.
+                let is_inside = normals.is_empty() && beyond.is_none();
+                return Ok(if is_little || is_inside { Along::Least(beyond) } else { Along::Stopped(beyond) });
             };
             at.point = self.inside(&admitted.point(&place));
             at.residuals = residuals;
