@@ -4,7 +4,7 @@
 
 use std::fs::{self, File, TryLockError};
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use tempfile::{Builder, TempDir};
 
@@ -13,10 +13,17 @@ use studygraph::presence;
 
 /// How their names begin.
 const PREFIX: &str = "gearstudy-";
+/// A file of this name with this text says that a run made the folder: others may have names that begin so.
+const MARK: &str = ".made-by-gearstudy";
+const MARKED: &str = "A temporary folder of a run of gearstudy. A later run removes it if this one was killed.\n";
+/// The folder inside that commands use.
+const CONTENT: &str = "content";
 
 /// A temporary folder, removed when it is dropped.
 pub(super) struct Scratch {
-    folder: TempDir,
+    content: PathBuf,
+    /// Removes all of it when it is dropped.
+    _folder: TempDir,
     /// Released after the folder is gone.
     _lock: Option<File>,
 }
@@ -30,11 +37,17 @@ impl Scratch {
     }
 
     pub(super) fn path(&self) -> &Path {
-        self.folder.path()
+        &self.content
     }
 }
 
 fn made(root: &Path) -> io::Result<Scratch> {
+    let marked = |folder: TempDir, lock: Option<File>| {
+        fs::write(folder.path().join(MARK), MARKED)?;
+        let content = folder.path().join(CONTENT);
+        fs::create_dir(&content)?;
+        Ok(Scratch { content, _folder: folder, _lock: lock })
+    };
     loop {
         let folder = Builder::new().prefix(PREFIX).tempdir_in(root)?;
         let lock = match locked(folder.path()) {
@@ -43,11 +56,11 @@ fn made(root: &Path) -> io::Result<Scratch> {
             Err(TryLockError::WouldBlock) => continue,
             Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::NotFound => continue,
             // Where there are no locks, nothing is known of other folders either.
-            Err(TryLockError::Error(_)) => return Ok(Scratch { folder, _lock: None }),
+            Err(TryLockError::Error(_)) => return marked(folder, None),
         };
         if presence::link_metadata(folder.path())?.is_some() {
             sweep(root, folder.path());
-            return Ok(Scratch { folder, _lock: lock });
+            return marked(folder, lock);
         }
     }
 }
@@ -75,7 +88,9 @@ fn sweep(root: &Path, own: &Path) {
             && owner(&path) == Some(user)
             && let Ok(_lock) = locked(&path)
         {
-            let _ = fs::remove_dir_all(&path);
+            let is_ours = fs::read(path.join(MARK)).is_ok_and(|text| text == MARKED.as_bytes());
+            // One without the mark was left before it had any content, or is not of a run.
+            let _ = if is_ours { fs::remove_dir_all(&path) } else { fs::remove_dir(&path) };
         }
     }
 }
@@ -102,6 +117,13 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let living = made(root.path()).unwrap();
         fs::create_dir_all(root.path().join("gearstudy-left/below")).unwrap();
+        fs::write(root.path().join("gearstudy-left").join(MARK), MARKED).unwrap();
+        fs::create_dir(root.path().join("gearstudy-empty")).unwrap();
+        for others in ["gearstudy-main", "gearstudy-0.1.0"] {
+            fs::create_dir(root.path().join(others)).unwrap();
+            fs::write(root.path().join(others).join("thesis.txt"), "work").unwrap();
+        }
+        fs::write(root.path().join("gearstudy-main").join(MARK), "somebody's").unwrap();
         fs::create_dir(root.path().join("other-left")).unwrap();
         fs::write(root.path().join("gearstudy-file"), "").unwrap();
         std::os::unix::fs::symlink("other-left", root.path().join("gearstudy-link")).unwrap();
@@ -111,10 +133,13 @@ mod tests {
             names.collect()
         };
         let all = names(root.path());
-        assert_eq!(all.len(), 5, "{all:?}");
-        assert!(!all.contains(&"gearstudy-left".to_owned()) && living.path().is_dir() && next.path().is_dir());
+        assert_eq!(all.len(), 7, "{all:?}");
+        let is_gone = |name: &str| !all.contains(&name.to_owned());
+        assert!(
+            is_gone("gearstudy-left") && is_gone("gearstudy-empty") && living.path().is_dir() && next.path().is_dir()
+        );
         drop((living, next));
-        assert_eq!(names(root.path()).len(), 3);
+        assert_eq!(names(root.path()).len(), 5);
     }
 
     /// A folder is new for a moment before it is locked.

@@ -125,10 +125,11 @@ pub const MOST_TABLE: u64 = 4 << 30;
 /// A pipe nobody writes to would be waited for and a device has no end, so what is not a file is not opened.
 ///
 /// # Errors
-/// What the system says; that it is not a regular file; that it is larger.
+/// What the system says; that a link on the way leads nowhere; that it is not a regular file; that it is larger.
 pub fn read(path: &Path, maximum: u64) -> io::Result<Vec<u8>> {
     let wrong = |problem: String| Err(io::Error::new(io::ErrorKind::InvalidData, problem));
-    let metadata = fs::metadata(path)?;
+    // A link that leads nowhere, as one to a disk that is not mounted, is not the absence of a file.
+    let metadata = presence::metadata(path)?.ok_or(io::ErrorKind::NotFound)?;
     if !metadata.is_file() {
         return wrong("it is not a regular file".to_owned());
     }

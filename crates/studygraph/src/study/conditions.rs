@@ -49,7 +49,17 @@ pub fn file_and_conditions(text: &str) -> Result<(&str, Vec<Condition>), Diagnos
     };
     let conditions: Option<Vec<Condition>> = inside.split(',').map(condition).collect();
     match conditions {
-        Some(conditions) => Ok((name, conditions)),
+        Some(conditions) => {
+            let repeated = conditions.iter().enumerate().find(|(index, one)| {
+                conditions[..*index].iter().any(|other| other.column.eq_ignore_ascii_case(&one.column))
+            });
+            if let Some((_, Condition { column, .. })) = repeated {
+                let message =
+                    format!("{} has two conditions on the column {}", quote(&format!("[{inside}]")), quote(column));
+                return Err(Diagnostic::new(message).help("name one value of it"));
+            }
+            Ok((name, conditions))
+        }
         None => {
             let message = format!("{} is not a condition on the lines of a file", quote(&format!("[{inside}]")));
             Err(Diagnostic::new(message).help("write `NAME.csv[tooth=3]`, or `NAME.csv[tooth=mean]` for the average"))

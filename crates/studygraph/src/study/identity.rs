@@ -84,14 +84,16 @@ pub fn name_of(file: &Path) -> io::Result<Option<String>> {
     }
 }
 
-/// The YAML files in a folder, sorted; what is not a file would be waited for.
+/// The YAML files in a folder, sorted, without hidden ones: editors and other systems leave locks and copies beside a file. What is
+/// not a file would be waited for.
 ///
 /// # Errors
 /// When the folder cannot be read.
 pub fn files_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for (path, _) in presence::entries(folder)? {
-        if path.extension().is_some_and(|word| word == "yaml") && presence::is_file(&path)? {
+        let is_hidden = path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));
+        if !is_hidden && path.extension().is_some_and(|word| word == "yaml") && presence::is_file(&path)? {
             files.push(path);
         }
     }
