@@ -42,6 +42,8 @@ struct Read {
     line_ends: Vec<String>,
     /// Nobody knows what they should be.
     unknown: Vec<String>,
+    /// Files that cannot be read.
+    unreadable: Vec<String>,
 }
 
 /// Why nothing can be said of a study.
@@ -72,6 +74,7 @@ pub(super) fn status(
     let mut faults = Vec::new();
     let (mut all, mut values) = (Vec::new(), Vec::new());
     let (mut damaged, mut line_ends, mut lost, mut stale) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut unreadable = Vec::new();
     for file in &files {
         match told(file, &settings, places, cache.as_ref(), check) {
             Ok(told) => {
@@ -86,6 +89,7 @@ pub(super) fn status(
                 if let Some(read) = &told.read {
                     damaged.extend(read.damaged.iter().filter(|name| !read.line_ends.contains(name)).map(path));
                     line_ends.extend(read.line_ends.iter().map(path));
+                    unreadable.extend(read.unreadable.iter().map(path));
                 }
                 lost.extend(told.lost.iter().filter(|_| check).map(path));
                 if check && !is_up_to_date(&told.standing) {
@@ -139,7 +143,8 @@ pub(super) fn status(
     }
     let unread_entries =
         of_cache(Left::Unread).map(|faulty| format!("cannot read `{}`: {}", faulty.path.display(), faulty.problem));
-    let unread_entries: Vec<String> = unread_entries.collect();
+    let unread_files = unreadable.iter().map(|path| format!("cannot read `{path}`: check its permissions"));
+    let unread_entries: Vec<String> = unread_entries.chain(unread_files).collect();
     if !advice.is_empty() {
         advice.extend(unread_entries.iter().cloned());
     }
@@ -198,7 +203,9 @@ fn standing_now(study: &Study, folder: &Folder, check: bool) -> Result<(Standing
     let known = folder.known().map_err(|error| Diagnostic::new(error.to_string()))?;
     let known = if check { known.map(Known::without_stamps) } else { known };
     let read = known.as_ref().filter(|_| check).map(|known| {
-        let damaged = known.changed_in_parallel();
+        let is_unreadable = |file: &String| known.state(file) == FileState::Unreadable;
+        let (unreadable, damaged) = known.changed_in_parallel().into_iter().partition(is_unreadable);
+        let damaged: Vec<String> = damaged;
         let (mut files, mut bytes, mut unknown) = (0, 0, Vec::new());
         for record in &known.manifest.files {
             match (known.state(&record.file), known.expected(&record.file)) {
@@ -208,7 +215,7 @@ fn standing_now(study: &Study, folder: &Folder, check: bool) -> Result<(Standing
             }
         }
         let line_ends = damaged.iter().filter(|file| known.has_other_line_ends(file)).cloned().collect();
-        Read { files, bytes, damaged, line_ends, unknown }
+        Read { files, bytes, damaged, line_ends, unknown, unreadable }
     });
     Ok((standing_of(study, known.as_ref())?, read))
 }
@@ -246,18 +253,22 @@ fn value(told: &Told) -> Value {
     if let Some(read) = read {
         value["damaged"] = json!(read.damaged);
         value["unknown"] = json!(read.unknown);
+        value["unreadable"] = json!(read.unreadable);
     }
     value
 }
 
 /// What reading every file found.
 fn read_text(told: &Told) -> String {
-    let Some(Read { files, bytes, damaged, line_ends, unknown }) = &told.read else { return String::new() };
+    let Some(Read { files, bytes, damaged, line_ends, unknown, unreadable }) = &told.read else { return String::new() };
     #[allow(clippy::cast_precision_loss)]
     let mut text = format!("  {files} files as they were written ({:.1} MB)\n", *bytes as f64 / 1e6);
     for file in damaged {
         let what = if line_ends.contains(file) { index::LINE_ENDS } else { "damaged" };
         text += &format!("  {file}: {what}\n");
+    }
+    for file in unreadable {
+        text += &format!("  {file}: cannot be read\n");
     }
     for file in unknown {
         text += &format!("  {file}: not known what it was; a run tells\n");

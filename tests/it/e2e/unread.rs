@@ -49,6 +49,31 @@ fn results_that_cannot_be_read_are_not_absent() {
     assert_eq!(desk.run(&["status", "quick.yaml"], 0).0, "quick: up to date\n");
 }
 
+/// A link to a disk that is not mounted, in the place of a study's results, is not their absence; a file that cannot be read is not a
+/// damaged one. Locks of editors beside a study are not studies.
+#[cfg(unix)]
+#[test]
+fn a_link_that_leads_nowhere_is_not_an_absent_study() {
+    let desk = two_studies();
+    fs::remove_file(desk.path("results/quick")).unwrap();
+    std::os::unix::fs::symlink("/not/mounted/quick", desk.path("results/quick")).unwrap();
+    for words in [&["gc", "--days", "0"][..], &["diff", "results", "results"], &["status", "quick.yaml"]] {
+        assert!(desk.run(words, 1).1.contains("the link `results/quick` leads nowhere"), "{words:?}");
+    }
+    fs::remove_file(desk.path("results/quick")).unwrap();
+    fs::rename(desk.path("quick.aside"), desk.path("results/quick")).unwrap();
+    let table = desk.path("results/quick/ste.summary.parquet");
+    obstruct(&table);
+    let (out, error) = desk.run(&["status", "--check", "quick.yaml"], 4);
+    assert!(out.contains("ste.summary.parquet: cannot be read") && !error.contains("writes it anew"), "{out}{error}");
+    fs::remove_file(&table).unwrap();
+    fs::rename(table.with_extension("aside"), &table).unwrap();
+    fs::create_dir(desk.path("studies")).unwrap();
+    fs::rename(desk.path("quick.yaml"), desk.path("studies/quick.yaml")).unwrap();
+    std::os::unix::fs::symlink("ada@host.1:2", desk.path("studies/.#quick.yaml")).unwrap();
+    assert_eq!(desk.run(&["status", "quick"], 0).0, "quick: up to date\n");
+}
+
 /// What a check of the cache cannot read or remove is not gone from it.
 #[cfg(unix)]
 #[test]

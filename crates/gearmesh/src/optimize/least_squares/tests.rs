@@ -155,6 +155,17 @@ fn the_least_at_an_edge_is_that_of_a_dense_grid() {
     }
 }
 
+/// A least value inside, far from the points without residuals that a step met, is no edge.
+#[test]
+fn a_least_value_inside_is_not_at_an_edge() {
+    let model = |p: &[f64]| (p[0].abs() <= 1.0).then(|| vec![2.0 + (p[0] - 0.3) * (p[0] - 0.3)]);
+    for start in [-0.99, -0.5, 0.2, 0.9] {
+        let fit = fitted(&[(-3.0, 4.0)], &[start], &model).0.unwrap();
+        assert!((fit.point[0] - 0.3).abs() < 1e-3, "{:?} from {start}", fit.point);
+        assert!(fit.end == End::Settled && fit.beyond.is_none(), "{:?} {:?} from {start}", fit.end, fit.beyond);
+    }
+}
+
 /// What cannot be shown to be least is not called so: a comb of slits has no edge with a normal.
 #[test]
 fn a_search_that_an_edge_ends_says_so() {

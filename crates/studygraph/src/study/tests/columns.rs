@@ -191,7 +191,7 @@ fn one_of_several_teeth_is_chosen_or_all_are_averaged() {
     }
     let german = "Zahn; Flanke; x [mm]\n1; Links; 4\n1; Rechts; 5\n2; Links; 6\n";
     assert_eq!(of(german, "a.csv[zahn=1, Flanke=rechts]"), ["x: `5 mm`"]);
-    for wrong in ["a.csv[tooth]", "a.csv[]", "a.csv[=3]", "a.csv[tooth=]"] {
+    for wrong in ["a.csv[tooth]", "a.csv[]", "a.csv[=3]", "a.csv[tooth=]", "a.csv[tooth=mean, Tooth=2]"] {
         assert!(file_and_conditions(wrong).is_err(), "{wrong}");
     }
 }
