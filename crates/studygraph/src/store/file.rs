@@ -128,8 +128,14 @@ pub const MOST_TABLE: u64 = 4 << 30;
 /// What the system says; that a link on the way leads nowhere; that it is not a regular file; that it is larger.
 pub fn read(path: &Path, maximum: u64) -> io::Result<Vec<u8>> {
     let wrong = |problem: String| Err(io::Error::new(io::ErrorKind::InvalidData, problem));
-    // A link that leads nowhere, as one to a disk that is not mounted, is not the absence of a file.
-    let metadata = presence::metadata(path)?.ok_or(io::ErrorKind::NotFound)?;
+    let metadata = match fs::metadata(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            // A link that leads nowhere, as one to a disk that is not mounted, is not the absence of a file.
+            presence::metadata(path)?;
+            return Err(error);
+        }
+        read => read?,
+    };
     if !metadata.is_file() {
         return wrong("it is not a regular file".to_owned());
     }
