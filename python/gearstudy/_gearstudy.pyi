@@ -356,10 +356,9 @@ def summaries(
 
     Returns
     -------
-    dict from name to an array of shape (designs,): ``peak_to_peak``, ``mean``, ``unloaded_peak_to_peak`` and ``harmonic_1`` on in
-    metres, ``variance`` in square metres, ``loaded_contact_ratio``, ``largest_load_share``, and with ``pressure``
-    ``largest_pressure`` in pascals. With ``invalid="nan"`` a design that does not fit, or approaches farther than corner contact
-    is modelled for, has NaN throughout.
+    dict from name to an array of shape (designs,), in SI units: the numbers of a curve that the table ``summary`` of the stage ``ste``
+    has, by its names, those of pressure with ``pressure`` only; and ``harmonic_1`` on in metres. With ``invalid="nan"`` a design that
+    does not fit, or approaches farther than corner contact is modelled for, has NaN throughout.
 
     >>> found = summaries(stiffness, [100.0, 150.0], relief, harmonics=1)
     >>> sorted(found)[:3]
