@@ -10,7 +10,8 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::press::Pressed;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 /// Whatever may change an answer besides its deck.
 const READERS: [&str; 5] = [
@@ -37,14 +38,14 @@ fn is_anew() -> bool {
     env::var("GEARSTUDY_CALCULIX").is_ok_and(|word| word == "anew")
 }
 
-/// What was answered; nothing where that is not known, or all is to be computed.
-pub fn answer(deck: &str) -> Option<Pressed> {
+/// The recorded answer to a deck; none if there is no record, or if all answers are to be computed.
+pub fn answer<Answer: DeserializeOwned>(deck: &str) -> Option<Answer> {
     let text = fs::read(file(deck)).ok().filter(|_| !is_anew())?;
     Some(serde_json::from_slice(&text).expect("a record of this folder is what was written"))
 }
 
 /// Keeps what was answered, where that is asked for.
-pub fn keep(deck: &str, answered: &Pressed) {
+pub fn keep(deck: &str, answered: &impl Serialize) {
     if !is_anew() {
         // Past the capture of a test that passes: together they are minutes of every run.
         let missing = format!("\nNOT RECORDED: {}; GEARSTUDY_CALCULIX=anew does\n", file(deck).display());

@@ -8,9 +8,9 @@ use std::fmt::Write;
 
 use super::contact::pair;
 use super::press::{Case, Fineness, PENALTY, press_once};
-use super::program;
 use super::tooth::on_surface;
 use super::wheel::Wheel;
+use super::{program, recorded};
 use gearmesh::gear::compliance::finite_element::FiniteElement;
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, RootStresses};
 use gearmesh::gear::finite_elements::mesh::{Edge, Sizing};
@@ -47,6 +47,12 @@ fn theirs(side: Side, plane: Plane, across: usize, loads: &[(usize, f64, f64)]) 
         }
     }
     deck += "*EL PRINT, ELSET=GEAR\nS\n*END STEP\n";
+    // A deck in plane strain of 8 elements takes seconds; the program computes it in every run of the tests.
+    let is_recorded = plane == Plane::Stress || across > 8;
+    let record = format!("{}{deck}", include_str!("root_stress.rs"));
+    if is_recorded && let Some(answered) = recorded::answer(&record) {
+        return Some(answered);
+    }
     let printed = program::run("loaded teeth of one gear", &deck)?;
     let stresses = printed.table("stresses (elem, integ.pnt.,sxx,syy,szz,sxy,sxz,syz) for set GEAR");
     let form = gear.flank(gear.form_roll).height / module;
@@ -64,7 +70,11 @@ fn theirs(side: Side, plane: Plane, across: usize, loads: &[(usize, f64, f64)]) 
             SurfaceStress { place: gauge.place, along: gauge.along, length: gauge.length, stress }
         })
         .collect();
-    largest(&points).map(|(stress, _)| stress)
+    let (stress, _) = largest(&points)?;
+    if is_recorded {
+        recorded::keep(&record, &stress);
+    }
+    Some(stress)
 }
 
 /// Double contact early and late, and single contact, as zone and share of it.
@@ -149,7 +159,7 @@ fn root_stress_of_two_pairs_in_contact() {
 /// 0.10 % with 8 elements across, 0.05 % with 12.
 #[test]
 fn root_stress_in_plane_strain() {
-    compare(Plane::Strain, 8, &POSITIONS, 2e-3);
+    compare(Plane::Strain, 8, &POSITIONS[1..], 2e-3);
     compare(Plane::Strain, 12, &POSITIONS[..1], 1e-3);
 }
 

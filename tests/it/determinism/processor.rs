@@ -39,7 +39,7 @@ fn the_quick_study_has_the_same_contents_on_a_lesser_processor() {
 
 #[test]
 fn the_article_energy_ga_has_the_same_contents_on_a_lesser_processor() {
-    the_same_everywhere("energy_ga", &[1, 2, 3, 8]);
+    the_same_everywhere("energy_ga", &[1, 8]);
 }
 
 #[test]
@@ -49,7 +49,7 @@ fn the_article_harris_map_has_the_same_contents_on_a_lesser_processor() {
 
 #[test]
 fn the_article_zhai2020_has_the_same_contents_on_a_lesser_processor() {
-    the_same_everywhere("zhai2020", &[1, 2, 3, 8]);
+    the_same_everywhere("zhai2020", &[1, 8]);
 }
 
 /// Its finite elements are factorised by a library that the mask does not reach: the same processor to it, the same bits.

@@ -353,7 +353,7 @@ fn cut_anywhere(first: Option<&str>, study: &str, seed: u64, most: usize) {
     // Nothing lost, nothing wrong: the record is that of the run.
     let mut chance = Chance(seed);
     let mut wrong = Vec::new();
-    let (states, every) = if thorough() > 0 { (5000, 4) } else { (1500, 20) };
+    let (states, every) = if thorough() > 0 { (5000, 4) } else { (600, 20) };
     let (mut runs, states) = (0, most.min(states));
     for state in 0..states {
         let end = chance.below(trace.steps.len() + 1);
@@ -393,7 +393,7 @@ fn a_power_cut_while_one_of_many_stages_changes() {
     let many = kills::study(40);
     let other = many.replacen("amount: 5.001 um", "amount: 9.5 um", 1);
     assert_ne!(many, other);
-    cut_anywhere(Some(&many), &other, 4, 150);
+    cut_anywhere(Some(&many), &other, 4, 80);
 }
 
 /// The record is what was done: when nothing is lost, the disk is as the run left it.
