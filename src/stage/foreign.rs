@@ -53,6 +53,10 @@ const fn gear_torque(word: &'static str) -> Foreign {
     Foreign { remedy: Some(of_gear_torque), ..other(word, "torque", GEAR_TORQUE) }
 }
 
+const fn gear_speed(word: &'static str) -> Foreign {
+    other(word, "speed", "that of the pinion, n_pinion = n_gear z2/z1")
+}
+
 const fn pitch(word: &'static str) -> Foreign {
     let remark = "25.4 mm over the diametral pitch";
     Foreign { remedy: Some(of_diametral_pitch), ..other(word, "module", remark) }
@@ -267,6 +271,9 @@ static ENGLISH: &[Foreign] = &[
     word("load", "torque"),
     remarked("pinion_torque", "torque", PINION),
     remarked("torque_pinion", "torque", PINION),
+    remarked("torque_on_pinion", "torque", PINION),
+    remarked("torque_at_pinion", "torque", PINION),
+    remarked("torque_of_pinion", "torque", PINION),
     remarked("t1", "torque", PINION),
     remarked("input_torque", "torque", DRIVER),
     remarked("driving_torque", "torque", DRIVER),
@@ -280,6 +287,12 @@ static ENGLISH: &[Foreign] = &[
     gear_torque("load_torque"),
     gear_torque("torque_2"),
     gear_torque("torque2"),
+    gear_torque("torque_on_gear"),
+    gear_torque("torque_on_wheel"),
+    gear_torque("torque_at_gear"),
+    gear_torque("torque_at_wheel"),
+    gear_torque("torque_of_gear"),
+    gear_torque("gear_moment"),
     gear_torque("t2"),
     gear_torque("t_2"),
     tangential_force("force"),
@@ -294,6 +307,12 @@ static ENGLISH: &[Foreign] = &[
     power("nominal_power"),
     power("rated_power"),
     power("input_power"),
+    power("output_power"),
+    power("driving_power"),
+    power("driven_power"),
+    power("transmitted_power"),
+    power("motor_power"),
+    power("shaft_power"),
     within(&["tip_relief"], word("c_a", "amount")),
     within(&["root_relief"], word("c_f", "amount")),
     within(&["profile_crowning"], word("c_alpha", "amount")),
@@ -310,12 +329,16 @@ static ENGLISH: &[Foreign] = &[
     none("internal", EXTERNAL),
     none("is_internal", EXTERNAL),
     none("internal_gear", EXTERNAL),
+    none("internal_teeth", EXTERNAL),
+    none("internal_toothing", EXTERNAL),
     none("ring", EXTERNAL),
     none("ring_gear", EXTERNAL),
     none("annulus", EXTERNAL),
     none("planet", EXTERNAL),
     none("planets", EXTERNAL),
+    none("planet_gear", EXTERNAL),
     none("sun", EXTERNAL),
+    none("sun_gear", EXTERNAL),
     remarked("rpm", "speed", "with its unit, such as `1500 rpm`"),
     word("rotational_speed", "speed"),
     word("angular_speed", "speed"),
@@ -324,9 +347,11 @@ static ENGLISH: &[Foreign] = &[
     word("n1", "speed"),
     word("input_speed", "speed"),
     word("omega", "speed"),
-    other("gear_speed", "speed", "that of the pinion, n_pinion = n_gear z2/z1"),
-    other("wheel_speed", "speed", "that of the pinion, n_pinion = n_gear z2/z1"),
-    other("output_speed", "speed", "that of the pinion, n_pinion = n_gear z2/z1"),
+    gear_speed("gear_speed"),
+    gear_speed("wheel_speed"),
+    gear_speed("speed_of_gear"),
+    gear_speed("driven_speed"),
+    gear_speed("output_speed"),
     none("speed", SPEED),
     none("rpm", SPEED),
     none("rotational_speed", SPEED),

@@ -2,6 +2,8 @@
 //!
 //! Every field of every kind, with words before and behind its name, and with units that it does not have.
 
+mod meanings;
+
 use std::path::Path;
 
 use declare::error::nearest;

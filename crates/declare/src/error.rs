@@ -275,6 +275,19 @@ fn words(name: &str) -> Vec<String> {
 /// Names that a message lists at most.
 const MOST_NAMES: usize = 30;
 
+/// The same for a name that a field has elsewhere, which is no slip of the pen for other words: `angle` may stand for
+/// `pressure_angle`, `step` for `steps`; `load` stands neither for `law` nor for `load_factor`.
+#[must_use]
+pub fn suggest_for_field<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> String {
+    let is_same = |candidate: &&str| {
+        let head = candidate.strip_suffix(name).is_some_and(|before| before.ends_with('_'));
+        let [short, long] = if name.len() < candidate.len() { [name, candidate] } else { [candidate, name] };
+        head || long.strip_suffix('s') == Some(short)
+    };
+    let same: Vec<&str> = known.clone().into_iter().filter(is_same).collect();
+    if same.is_empty() { known_here(known) } else { suggest(name, same) }
+}
+
 /// `did you mean …`, or the list of what is known.
 #[must_use]
 pub fn suggest<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> String {
@@ -288,6 +301,10 @@ pub fn suggest<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone)
         let others: Vec<_> = others.iter().map(|name| format!("`{name}`")).collect();
         return format!("did you mean {} or `{last}`?", others.join(", "));
     }
+    known_here(known)
+}
+
+fn known_here<'a>(known: impl IntoIterator<Item = &'a str>) -> String {
     let mut names: Vec<_> = known.into_iter().map(|name| format!("`{name}`")).collect();
     if names.is_empty() {
         return "there are none to choose from".to_owned();

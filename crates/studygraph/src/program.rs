@@ -37,11 +37,13 @@ pub struct Derived {
 /// Numbers of a study around a word that is no field.
 #[derive(Clone, Copy)]
 pub struct Around<'a> {
-    /// The number of the word itself.
+    /// The number of the word itself; the middle of an interval.
     pub value: Option<Quantity>,
-    /// The number of a name beside it.
+    /// Half the width of that interval, in SI; 0 of a single number.
+    pub half: f64,
+    /// The number of a name beside it; none of an interval.
     pub beside: &'a dyn Fn(&str) -> Option<Quantity>,
-    /// The number at the end of these names in any stage; none where stages differ.
+    /// The number at the end of these names in any stage; none where stages differ, or of an interval.
     pub anywhere: &'a dyn Fn(&[&str]) -> Option<Quantity>,
 }
 

@@ -48,13 +48,29 @@ fn shown(si: f64, unit: &str) -> String {
     format!("{} {unit}", format!("{value:.6e}").parse().unwrap_or(value))
 }
 
+/// The number of the word, if it is no interval: of a formula that is not linear, and of fields that take no interval.
+fn single(around: &Around) -> Option<Quantity> {
+    around.value.filter(|_| around.half == 0.0)
+}
+
+/// A number, or the interval about it, as `show` writes the middle and half the width.
+fn with_half(around: &Around, middle: f64, half: f64, show: impl Fn(f64) -> String) -> String {
+    let half = if around.half > 0.0 { format!(" ± {}", show(half)) } else { String::new() };
+    format!("write `{}{half}`", show(middle))
+}
+
+fn times(around: &Around, factor: f64) -> Option<String> {
+    let length = si(around.value, LENGTH)?;
+    Some(with_half(around, factor * length, factor * around.half, |si| shown(si, "mm")))
+}
+
 pub fn half_of(around: &Around) -> Option<String> {
-    Some(format!("write `{}`", shown(0.5 * si(around.value, LENGTH)?, "mm")))
+    times(around, 0.5)
 }
 
 /// T = P/ω, of a speed beside it.
 pub fn of_power(around: &Around) -> Option<String> {
-    let power = si(around.value, POWER)?;
+    let power = si(single(around), POWER)?;
     let beside = SPEEDS.iter().find_map(|name| {
         let read = (around.beside)(name)?;
         match read.dimension {
@@ -74,14 +90,13 @@ pub fn of_power(around: &Around) -> Option<String> {
 /// The tip shortening in modules, -k.
 pub fn of_tip_alteration(around: &Around) -> Option<String> {
     let read = around.value?;
-    let factor =
-        if read.dimension == LENGTH { read.value / si((around.anywhere)(&["module"]), LENGTH)? } else { read.value };
-    Some(format!("write `{}`", significant(-factor, 6)))
+    let unit = if read.dimension == LENGTH { si((around.anywhere)(&["module"]), LENGTH)? } else { 1.0 };
+    Some(with_half(around, -read.value / unit, around.half / unit, |factor| significant(factor, 6)))
 }
 
 /// T = F m z1/2.
 pub fn of_force(around: &Around) -> Option<String> {
-    let force = si(around.value, FORCE)?;
+    let force = si(single(around), FORCE)?;
     let module = si((around.anywhere)(&["module"]), LENGTH)?;
     let teeth = (around.anywhere)(&["pinion", "teeth"])?.value;
     let torque = (teeth > 0.0).then_some(0.5 * force * module * teeth)?;
@@ -89,11 +104,11 @@ pub fn of_force(around: &Around) -> Option<String> {
 }
 
 pub fn twice(around: &Around) -> Option<String> {
-    Some(format!("write `{}`", shown(2.0 * si(around.value, LENGTH)?, "mm")))
+    times(around, 2.0)
 }
 
 pub fn of_gear_torque(around: &Around) -> Option<String> {
-    let torque = si(around.value, TORQUE)?;
+    let torque = si(single(around), TORQUE)?;
     let teeth = |gear: &str| Some((around.anywhere)(&[gear, "teeth"])?.value).filter(|teeth| *teeth > 0.0);
     let (pinion, gear) = (teeth("pinion")?, teeth("gear")?);
     Some(format!("with {pinion} and {gear} teeth write `torque: {}`", shown(torque * pinion / gear, "N m")))
@@ -101,7 +116,7 @@ pub fn of_gear_torque(around: &Around) -> Option<String> {
 
 /// Of a plain number, or one per inch.
 pub fn of_diametral_pitch(around: &Around) -> Option<String> {
-    let read = around.value.filter(|read| read.value > 0.0)?;
+    let read = single(around).filter(|read| read.value > 0.0)?;
     let inch = parse_quantity("25.4 mm").ok()?.value;
     let module = if read.has_unit { None } else { Some(inch / read.value) };
     Some(format!("write `module: {}`", shown(module?, "mm")))

@@ -4,19 +4,34 @@
 
 use super::decode::plain;
 use super::document::{Content, KeyValue, Node};
+use super::notation::halves_of;
 use super::overrides::Stages;
-use super::quantity::interval::middle;
 use crate::program::Around;
 use declare::parameter::{Field, Shape};
 use declare::units::{LENGTH, Quantity, foreign_quantity, parse_quantity};
 
 /// The number of a scalar, in any unit that is known anywhere; of an interval its middle.
 pub fn number(node: &Node) -> Option<Quantity> {
+    interval(node).map(|(middle, _)| middle)
+}
+
+/// The number of a scalar and half the width of its interval in SI, 0 of a single number. None of an interval whose numbers are of
+/// different kinds.
+fn interval(node: &Node) -> Option<(Quantity, f64)> {
     let Content::Scalar { text, quoted: false } = &node.content else { return None };
-    let middle = middle(text);
-    let text = middle.as_deref().unwrap_or(text);
-    let foreign = || foreign_quantity(text).map(|(value, dimension)| Quantity { value, dimension, has_unit: true });
-    parse_quantity(text).ok().or_else(foreign)
+    let read = |text: &str| {
+        let foreign = || foreign_quantity(text).map(|(value, dimension)| Quantity { value, dimension, has_unit: true });
+        parse_quantity(text).ok().or_else(foreign)
+    };
+    let Some([middle, half]) = halves_of(text) else { return Some((read(text)?, 0.0)) };
+    let (middle, half) = (read(&middle)?, read(&half)?);
+    let is_width = half.dimension == middle.dimension && half.has_unit == middle.has_unit && half.value >= 0.0;
+    is_width.then_some((middle, half.value))
+}
+
+/// The number of a scalar that is no interval: a formula with an interval would need its width too.
+fn single(node: &Node) -> Option<Quantity> {
+    interval(node).and_then(|(middle, half)| (half == 0.0).then_some(middle))
 }
 
 /// The result of a remedy for the value at `node`, which stands among `pairs`.
@@ -26,8 +41,10 @@ pub fn remedied(
     pairs: &[KeyValue],
     stages: Stages,
 ) -> Option<String> {
+    let own = interval(node);
     remedy(&Around {
-        value: number(node),
+        value: own.map(|(middle, _)| middle),
+        half: own.map_or(0.0, |(_, half)| half),
         beside: &|name| beside(pairs, name),
         anywhere: &|path| anywhere(stages.pairs, path),
     })
@@ -46,7 +63,7 @@ pub fn rule(field: &Field, node: &Node, pairs: &[KeyValue], stages: Stages) -> O
 }
 
 fn beside(pairs: &[KeyValue], name: &str) -> Option<Quantity> {
-    pairs.iter().find(|pair| pair.key.eq_ignore_ascii_case(name)).and_then(|pair| number(&pair.node))
+    pairs.iter().find(|pair| pair.key.eq_ignore_ascii_case(name)).and_then(|pair| single(&pair.node))
 }
 
 /// The number that all stages have at the end of these names, of those that have one.
@@ -57,7 +74,7 @@ fn anywhere(stages: &[KeyValue], path: &[&str]) -> Option<Quantity> {
             let Content::Mapping(pairs) = &node.content else { return None };
             node = &pairs.iter().find(|pair| pair.key == *name)?.node;
         }
-        number(node)
+        single(node)
     };
     let mut found = stages.iter().filter_map(of_stage);
     let first = found.next()?;

@@ -109,8 +109,8 @@ impl<'a> Decoder<'a> {
             let refused = |name: &str, node: &Node| {
                 let field = field(name).filter(|field| is_number(&field.shape))?;
                 let of = |unit: &str| length_of(unit).map(|own| own.1).or_else(|| self.length_around(unit));
-                let read = Measure::of(field).counting(field, of).value(node, field.span, Ok(()));
-                read.err().map(|wrong| self.with_rule(wrong, field, node, pairs))
+                let wrong = Measure::of(field).counting(field, of).refused(node, field)?;
+                Some(self.with_rule(wrong, field, node, pairs))
             };
             let (known, stages) = (known.as_slice(), self.stages);
             let mapping =

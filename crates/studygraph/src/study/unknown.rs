@@ -2,14 +2,15 @@
 //!
 //! Must not know: what any field means.
 
+use super::around;
 use super::document::{Content, KeyValue, Node};
 use super::notation;
 use super::overrides::Stages;
 use super::quantity::interval::halves;
+use super::whereabouts::{self, Counted};
 use super::words::{alternatives, quote};
-use super::{around, whereabouts};
 use crate::program::Foreign;
-use declare::error::{Diagnostic, Place, suggest};
+use declare::error::{Diagnostic, Place, suggest, suggest_for_field};
 use declare::parameter::Field;
 
 /// A mapping with keys that are no fields of it.
@@ -55,7 +56,12 @@ impl<'a> Mapping<'a> {
             }
             let message = format!("unknown field {} of {label}", quote(&pair.key));
             let help = self.called(pair).or_else(|| without_space(pair, known)).unwrap_or_else(|| {
-                let help = suggest(&pair.key, known.iter().copied());
+                let names = known.iter().copied();
+                let help = if whereabouts::is_known(&pair.key, self.stages.kinds) {
+                    suggest_for_field(&pair.key, names)
+                } else {
+                    suggest(&pair.key, names)
+                };
                 match self.elsewhere(&pair.key) {
                     Some(lead) if !help.starts_with("did you mean") => format!("{lead}; {help}"),
                     _ => help,
@@ -129,14 +135,14 @@ impl<'a> Mapping<'a> {
 
     /// Where a study has a field of this name, or of that by which it calls this word of others.
     fn elsewhere(&self, word: &str) -> Option<String> {
-        let place = |name: &str| whereabouts::place(name, self.fields, self.stages.kinds);
-        if let Some(place) = place(word) {
+        let place = |name: &str, counted| whereabouts::place(name, self.fields, self.stages.kinds, counted);
+        if let Some(place) = place(word, Counted::Telling) {
             return Some(format!("{} belongs in {place}", quote(word)));
         }
         matching(word, self.stages.foreign).find_map(|other| {
             let field = other.field?;
             let place = match other.inside {
-                [] => place(field),
+                [] => place(field, Counted::All),
                 inside => Some(alternatives(inside.iter().copied())),
             };
             let place = place.unwrap_or_else(|| "another place".to_owned());

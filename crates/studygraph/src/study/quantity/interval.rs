@@ -3,11 +3,13 @@
 //! The middle is the number, read as it would be by itself; half the width says what else it may be. Must not know: what is
 //! done with it.
 
+use super::super::decode::is_single;
 use super::super::document::{Content, Node};
 use super::super::notation;
 use super::super::words::{self, quote};
 use super::Measure;
 use declare::error::{Diagnostic, Place};
+use declare::parameter::Field;
 use declare::record::Record;
 use declare::record::varied::{Axis, Form, Slot, Spread, Values, Within};
 use declare::units::{Dimension, LENGTH, RATIO, foreign_quantity, parse_quantity, split_quantity};
@@ -120,6 +122,31 @@ pub fn without_interval(mut node: Node) -> Node {
     node
 }
 
+/// The text that a help offers, `write ...`.
+fn written(help: &str) -> Option<&str> {
+    help.split_once("write `")?.1.split_once('`').map(|(text, _)| text)
+}
+
+/// A help for one of the numbers of an interval with both of them, as they are to be written; none if one is not known.
+fn of_both(help: &str, [middle, half]: [Option<&str>; 2]) -> Option<String> {
+    let Some(alone) = written(help) else { return Some(help.to_owned()) };
+    Some(help.replacen(&quote(alone), &quote(&format!("{} ± {}", middle?, half?)), 1))
+}
+
+/// The error of one of the numbers of an interval, `texts`, with a help for the whole.
+fn of_whole(found: &Diagnostic, texts: [&str; 2], read: &[Result<f64, Diagnostic>; 2], shown: &str) -> Diagnostic {
+    let of =
+        |at: usize| read[at].as_ref().map_or_else(|wrong| wrong.help.as_deref().and_then(written), |_| Some(texts[at]));
+    let help = found.help.as_deref().and_then(|help| of_both(help, [of(0), of(1)]));
+    let mut message = found.message.clone();
+    if texts.iter().all(|text| split_quantity(text).1.is_empty()) {
+        let [middle, half] = texts;
+        let example = message.replace(&format!("`{middle} "), &format!("`{middle} ± {half} "));
+        message = example.replace(&quote(middle), shown);
+    }
+    Diagnostic { message, help, ..found.clone() }
+}
+
 /// A length in SI, in any unit that is known anywhere.
 fn length_of(text: &str) -> Option<f64> {
     let foreign = || foreign_quantity(text).filter(|read| read.1 == LENGTH).map(|read| read.0);
@@ -128,6 +155,15 @@ fn length_of(text: &str) -> Option<f64> {
 }
 
 impl Measure<'_> {
+    /// The error of a value of a field, which may be an interval where it is a single number.
+    pub fn refused(&self, node: &Node, field: &Field) -> Option<Diagnostic> {
+        match if is_single(field) { self.interval(node) } else { Ok(None) } {
+            Ok(Some(_)) => None,
+            Ok(None) => self.value(node, field.span, Ok(())).err(),
+            Err(wrong) => Some(wrong),
+        }
+    }
+
     /// What a single number of a field may be besides itself; none where it is no interval.
     ///
     /// # Errors
@@ -151,8 +187,12 @@ impl Measure<'_> {
             let message = format!("{shown} has more than one sign; {} is expected", self.expected());
             return Err(wrong(message).help("an interval is written `0.504 ± 0.0005`, or `5.05 ± 0.005 mm`"));
         }
-        if let Some(help) = [before, behind].into_iter().find_map(notation::help) {
-            return Err(other_notation().help(notation::with_reading(help, text, &|text| self.distance(text))));
+        let helps = [before, behind].map(notation::help);
+        if let Some(help) = helps.iter().flatten().next() {
+            let parts = [(before, helps[0].as_deref()), (behind, helps[1].as_deref())];
+            let help = of_both(help, parts.map(|(text, help)| help.map_or(Some(text), written)));
+            let found = help.map(|help| notation::with_reading(help, text, &|text| self.distance(text)));
+            return Err(Diagnostic { help: found, ..other_notation() });
         }
         let mut found = self.counted(before, behind, &shown);
         found = found.or_else(|| self.in_percent(before, behind, &shown));
@@ -163,12 +203,14 @@ impl Measure<'_> {
         let part = |text: String| Node { content: Content::Scalar { text, quoted: false }, place: node.place };
         let width = Self { minimum: f64::NEG_INFINITY, maximum: f64::INFINITY, ..*self };
         let own = middle(text).unwrap_or_default();
-        let half = || width.single(&part(behind.to_owned()));
-        // What is wrong with a unit behind both is told of what is written.
-        if own != before || split_quantity(behind).0.is_empty() {
-            half()?;
+        let read = [self.single(&part(own.clone())), width.single(&part(behind.to_owned()))];
+        // A fault of a unit behind both is reported of the text as it is written.
+        let first = usize::from(own != before || split_quantity(behind).0.is_empty());
+        if let Some(found) = [first, 1 - first].into_iter().find_map(|at| read[at].as_ref().err()) {
+            return Err(of_whole(found, [&own, behind], &read, &shown));
         }
-        let (middle, half) = (self.single(&part(own.clone()))?, half()?);
+        let [middle, half] = read;
+        let (middle, half) = (middle?, half?);
         if half <= 0.0 {
             let message =
                 format!("{} behind the sign of {shown} is no half of a width: it is not above 0", quote(behind));

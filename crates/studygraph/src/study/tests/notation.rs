@@ -120,7 +120,11 @@ const CHANGES: &[(&str, &str, &str)] = &[
         "module: 3.000 ± some um",
         "8:13: `some um` is not a number; a length (for example `3 mm`) is expected",
     ),
-    ("module: 3 mm", "module: 3.000 ± 1", "8:13: `3.000` has no unit; a length is expected, for example `3.000 mm`"),
+    (
+        "module: 3 mm",
+        "module: 3.000 ± 1",
+        "8:13: `3.000 ± 1` has no unit; a length is expected, for example `3.000 ± 1 mm`",
+    ),
     ("module: 3 mm", "module: 3.000 ± 1 deg", "8:13: `1 deg` is an angle; a length (for example `3 mm`) is expected"),
     (
         "module: 3 mm",
