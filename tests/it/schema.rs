@@ -168,6 +168,50 @@ fn schema_and_program_agree_about_names() {
     assert!(tried > 30, "{tried}");
 }
 
+/// Tier: invariant; limits of whole numbers that stand in the schema are those at which the program refuses.
+#[test]
+fn schema_and_program_agree_about_limits_of_whole_numbers() {
+    let schema = studygraph::study::schema::schema(KINDS);
+    let read = |seed: &str, count: &str| {
+        let text = format!(
+            "study: a\nseed: {seed}\nstages:\n  pair:\n    kind: geometry\n    module: 3 mm\n    pinion: {{ teeth: 20, \
+             face_width: 20 mm, bore_radius: 10 mm }}\n    gear: {{ teeth: 30, face_width: 20 mm, bore_radius: 10 mm }}\n  \
+             stiffness: {{ kind: stiffness, pair: pair }}\n  designs: {{ kind: modification, pair: pair, designs: {{ e: [] }} }}\n  \
+             ste: {{ kind: ste, stiffness: stiffness, designs: designs, torque: {{ from: 1 N m, to: 9 N m, count: {count} }} }}\n"
+        );
+        gearstudy::program::load_text(&text, Path::new("limits.yaml")).is_ok()
+    };
+    let seed = &schema["properties"]["seed"];
+    assert_eq!((seed["minimum"].as_i64(), seed["maximum"].as_i64()), (Some(0), Some(i64::MAX)));
+    assert!(read("9223372036854775807", "2") && !read("9223372036854775808", "2") && !read("-1", "2"));
+    let torque = &schema["$defs"]["kind_ste"]["properties"]["torque"]["anyOf"];
+    let count = &torque[2]["properties"]["count"];
+    assert_eq!((count["minimum"].as_i64(), count["maximum"].as_i64()), (Some(2), Some(100_000)), "{torque}");
+    assert_eq!(torque[1]["maxItems"].as_i64(), Some(100_000));
+    assert!(read("0", "100000") && !read("0", "100001") && !read("0", "1"));
+}
+
+/// Tier: invariant; no whole number of the schema is without both limits.
+#[test]
+fn every_whole_number_of_the_schema_has_its_limits() {
+    fn integers(schema: &Value, wrong: &mut Vec<String>, found: &mut usize) {
+        if schema["type"] == "integer" {
+            *found += 1;
+            if schema.get("minimum").is_none() || schema.get("maximum").is_none() {
+                wrong.push(schema.to_string());
+            }
+        }
+        match schema {
+            Value::Object(inner) => inner.values().for_each(|inner| integers(inner, wrong, found)),
+            Value::Array(inner) => inner.iter().for_each(|inner| integers(inner, wrong, found)),
+            _ => {}
+        }
+    }
+    let (mut wrong, mut found) = (Vec::new(), 0);
+    integers(&studygraph::study::schema::schema(KINDS), &mut wrong, &mut found);
+    assert!(wrong.is_empty() && found > 50, "{found}: {wrong:?}");
+}
+
 /// What another validator accepts in `schema.py` the program accepts too: names that are numbers, spaces that do not break a line,
 /// block scalars and merged stages.
 #[test]

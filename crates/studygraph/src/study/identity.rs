@@ -19,8 +19,9 @@ const KEY: &str = "study";
 /// Largest number that a schema takes for a name: one of more digits is too long.
 pub const MOST: f64 = 1e64;
 
-/// The name that a plain scalar is to readers of YAML 1.2: a number or a truth value that cannot be a name as it is written, such as
-/// `+5`, `0x1F` or `True`, is the same value in decimal digits or small letters. None for a number that is no name in any form.
+/// The name that a plain scalar is to readers of YAML 1.2: a hexadecimal or octal number, and a number or a truth value that cannot be
+/// a name as it is written, such as `+5` or `True`, is the same value in decimal digits or small letters. None for a number that is no
+/// name in any form.
 #[must_use]
 pub fn plain_name(text: &str) -> Option<String> {
     if matches!(text, "True" | "TRUE" | "False" | "FALSE") {
@@ -30,8 +31,10 @@ pub fn plain_name(text: &str) -> Option<String> {
         && text.starts_with(|c: char| c.is_ascii_alphanumeric())
         && text.bytes().all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || b"-_".contains(&byte));
     let own = || Some(text.to_owned());
-    if let Some(digits) = text.strip_prefix("0x").filter(|_| !is_name) {
-        return u128::from_str_radix(digits, 16).ok().map(|value| value.to_string()).or_else(own);
+    if let Some((digits, base)) =
+        [("0x", 16), ("0o", 8)].iter().find_map(|(sign, base)| Some((text.strip_prefix(sign)?, *base)))
+    {
+        return in_decimal_digits(digits, base).or_else(own);
     }
     let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
     if !unsigned.is_empty() && unsigned.bytes().all(|byte| byte.is_ascii_digit()) {
@@ -47,6 +50,26 @@ pub fn plain_name(text: &str) -> Option<String> {
     let Some(value) = text.parse::<f64>().ok().filter(|_| is_number) else { return own() };
     let value = (value.fract() == 0.0 && (0.0..MOST).contains(&value)).then_some(value)?;
     if is_name { own() } else { Some(format!("{:.0}", value.abs())) }
+}
+
+/// A whole number of any length in another base; none where these are no digits of it.
+fn in_decimal_digits(digits: &str, base: u32) -> Option<String> {
+    // The last digit first.
+    let mut decimal = vec![0];
+    for digit in digits.chars() {
+        let mut carry = digit.to_digit(base)?;
+        for place in &mut decimal {
+            carry += *place * base;
+            *place = carry % 10;
+            carry /= 10;
+        }
+        while carry > 0 {
+            decimal.push(carry % 10);
+            carry /= 10;
+        }
+    }
+    let text = || decimal.iter().rev().map(u32::to_string).collect();
+    (!digits.is_empty()).then(text)
 }
 
 /// The value of `study:` in a text; none where it has none, or is no YAML.

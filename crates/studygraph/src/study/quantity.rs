@@ -18,8 +18,8 @@ use declare::units::{self, Dimension, RATIO, UnitError, parse_quantity, split_qu
 
 /// Largest power of a unit that a message names.
 const MOST_POWER: i8 = 9;
-/// Points of an axis.
-const MOST_POINTS: usize = 100_000;
+/// Most points of an axis.
+pub const MOST_POINTS: usize = 100_000;
 
 /// What a field says about its number.
 #[derive(Clone, Copy)]

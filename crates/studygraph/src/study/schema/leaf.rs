@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use crate::study::assemble::NAME_PATTERN;
 use crate::study::identity::MOST;
+use crate::study::quantity::MOST_POINTS;
 use crate::study::varied::COLUMN_PATTERN;
 use crate::study::words;
 use declare::units::{ANGLE, Dimension, FORCE, LENGTH, RATIO, TIME, in_unit, parse_quantity, parse_unit, symbols};
@@ -126,13 +127,7 @@ pub fn number((minimum, maximum): (f64, f64), example: Option<&str>, rounded: bo
 }
 
 pub fn integer(minimum: i64, maximum: i64, multiple: i64, example: Option<&str>) -> Value {
-    let mut schema = json!({ "type": "integer" });
-    if minimum != i64::MIN {
-        schema["minimum"] = json!(minimum);
-    }
-    if maximum != i64::MAX {
-        schema["maximum"] = json!(maximum);
-    }
+    let mut schema = json!({ "type": "integer", "minimum": minimum, "maximum": maximum });
     if multiple != 1 {
         schema["multipleOf"] = json!(multiple);
     }
@@ -202,7 +197,7 @@ pub fn paths() -> Value {
 
 /// One value, a list, or evenly spaced ones.
 pub fn axis(single: &Value) -> Value {
-    json!({ "anyOf": [single, { "type": "array", "minItems": 1, "items": single }, spaced(single)] })
+    json!({ "anyOf": [single, { "type": "array", "minItems": 1, "maxItems": MOST_POINTS, "items": single }, spaced(single)] })
 }
 
 fn spaced(single: &Value) -> Value {
@@ -236,6 +231,8 @@ pub fn many(single: &Value) -> [Value; 2] {
 
 /// The fields of evenly spaced values.
 pub fn ends(single: &Value) -> Value {
+    #[allow(clippy::cast_possible_wrap)] // a constant below a million
+    let count = integer(2, MOST_POINTS as i64, 1, Some("5"));
     let named = |name: &str, description: &str, mut schema: Value| {
         schema["title"] = json!(title(name));
         schema["description"] = json!(description);
@@ -244,6 +241,6 @@ pub fn ends(single: &Value) -> Value {
     json!({
         "from": named("from", "The first value.", single.clone()),
         "to": named("to", "The last value, which is one of them.", single.clone()),
-        "count": named("count", "How many values there are, with both ends.", integer(2, i64::MAX, 1, Some("5"))),
+        "count": named("count", "How many values there are, with both ends.", count),
     })
 }
