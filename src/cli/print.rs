@@ -4,6 +4,7 @@ use comfy_table::{Cell as DrawnCell, CellAlignment, ContentArrangement, Row, Tab
 use serde_json::{Map, Value, json};
 
 use super::arguments::Format;
+use declare::number::counted;
 use studygraph::diff::markdown::escaped;
 use studygraph::store::csv::{Dialect, heading, write_cells};
 use studygraph::table::data::{Cell, Table};
@@ -115,7 +116,7 @@ impl Grid<'_> {
             };
             drawn.add_row(Row::from(row[..fitting].iter().zip(&self.columns).map(cell).collect::<Vec<_>>()));
         }
-        let count = if self.rows == 1 { "1 row".to_owned() } else { format!("{} rows", self.rows) };
+        let count = counted(self.rows, "row");
         let rest: Vec<&str> = self.columns[fitting..].iter().map(|column| column.name.as_str()).collect();
         let cut = match rest[..] {
             [] => String::new(),

@@ -15,6 +15,7 @@ use super::show::table_value;
 use super::{Ending, json, studies};
 use crate::query::tables::{List, Tables};
 use crate::query::{Answer, Kind, ask};
+use declare::number::counted;
 use studygraph::history::git::Repository;
 use studygraph::store::cache::Cache;
 use studygraph::store::file::{self, Durability};
@@ -133,7 +134,7 @@ fn write(answer: &Answer, path: &Path, target: Target, quiet: bool) -> Result<()
     file::write(path, &bytes, Durability::Lazy).map_err(|error| Ending::Usage(error.to_string()))?;
     let rows = answer.columns.first().map_or(0, |column| column.cells.len());
     if !quiet {
-        out(&format!("wrote {}, {rows} rows\n", path.display()));
+        out(&format!("wrote {}, {}\n", path.display(), counted(rows, "row")));
     }
     Ok(())
 }

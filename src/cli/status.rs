@@ -11,6 +11,7 @@ use super::progress::{self, out};
 use super::{Ending, json, studies};
 use crate::program;
 use declare::error::Diagnostic;
+use declare::number::counted;
 use studygraph::runner::standing::{Condition, StageStanding, Standing, standing_of};
 use studygraph::store::cache::{Cache, Left, Lookup};
 use studygraph::store::index;
@@ -262,7 +263,8 @@ fn value(told: &Told) -> Value {
 fn read_text(told: &Told) -> String {
     let Some(Read { files, bytes, damaged, line_ends, unknown, unreadable }) = &told.read else { return String::new() };
     #[allow(clippy::cast_precision_loss)]
-    let mut text = format!("  {files} files as they were written ({:.1} MB)\n", *bytes as f64 / 1e6);
+    let as_written = if *files == 1 { "as it was written" } else { "as they were written" };
+    let mut text = format!("  {} {as_written} ({:.1} MB)\n", counted(*files, "file"), *bytes as f64 / 1e6);
     for file in damaged {
         let what = if line_ends.contains(file) { index::LINE_ENDS } else { "damaged" };
         text += &format!("  {file}: {what}\n");

@@ -12,7 +12,7 @@ use super::scratch::Scratch;
 use super::signals::stop_flag;
 use super::{Ending, pages, run};
 use crate::program::PROGRAM;
-use declare::number::with_unit;
+use declare::number::{counted, with_unit};
 use studygraph::diff::model::{ColumnDiff, Difference, Extreme, TableDiff, Value};
 use studygraph::diff::words;
 use studygraph::runner::execute::RunError;
@@ -116,11 +116,11 @@ fn as_text(verification: &Verification) -> String {
     let [identical, within, different] = verification.counts();
     let [same, otherwise, other] = of_files(verification);
     text + &format!(
-        "{0}: {1} tables: {identical} identical, {within} within tolerance, {different} different\n\
-         {0}: {2} other files: {same} identical, {otherwise} made otherwise, {other} different\n",
+        "{0}: {1}: {identical} identical, {within} within tolerance, {different} different\n\
+         {0}: {2}: {same} identical, {otherwise} made otherwise, {other} different\n",
         verification.study,
-        verification.tables.len(),
-        verification.files.len()
+        counted(verification.tables.len(), "table"),
+        counted(verification.files.len(), "other file")
     )
 }
 

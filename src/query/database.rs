@@ -19,6 +19,7 @@ use super::kinds::{COMPARED, IS_AMONG, IS_BETWEEN, IS_NUMBER};
 use super::names::Parsed;
 use super::{Answer, Column, Kind};
 use declare::error::suggest;
+use declare::number::counted;
 use studygraph::table::data::{Cell, Data, Table};
 
 /// Bytes that SQLite may hold, that an answer may, and that medians may: joins of large tables have more rows than any
@@ -81,8 +82,9 @@ pub(super) fn answer(
         height += 1;
         if height * width > MOST_VALUES {
             return Err(format!(
-                "the answer has more than {MOST_VALUES} values, in rows of {width} columns: choose fewer with WHERE or LIMIT, \
-                 or sum up with GROUP BY"
+                "the answer has more than {MOST_VALUES} values, in rows of {}: choose fewer with WHERE or LIMIT, or sum up \
+                 with GROUP BY",
+                counted(width, "column")
             ));
         }
         for (at, column) in columns.iter_mut().enumerate() {

@@ -10,7 +10,7 @@ use serde::Serialize;
 use self::panels::Named;
 use super::figure::Tables;
 use super::{ReportError, floats, integers, texts};
-use declare::number::{significant, unit_symbol};
+use declare::number::{counted, significant, unit_symbol};
 use studygraph::store::manifest::{Manifest, StageRecord};
 use studygraph::table::data::{Data, Table};
 
@@ -80,8 +80,9 @@ fn of_stage(stage: &StageRecord, tables: Tables<'_>) -> Result<Option<Sweep>, Re
         .collect::<Result<_, ReportError>>()?;
     let more = if invalid.rows() > 3 { ", and others" } else { "" };
     let said = match lost {
+        0 if rows == 1 => "1 design, with numbers.".to_owned(),
         0 => format!("{rows} designs, all of them with numbers."),
-        _ => format!("{rows} designs, {lost} of them without numbers: {}{more}.", reasons.join(", ")),
+        _ => format!("{}, {lost} of them without numbers: {}{more}.", counted(rows, "design"), reasons.join(", ")),
     };
     let columns = &best.schema().columns;
     let cell = |data: &Data, row: usize| match data {

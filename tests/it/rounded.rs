@@ -391,6 +391,9 @@ fn an_interval_without_effect_is_warned_of() {
     let pair = PAIR.replace("0.21", "0.21 ± 0.005").replace("14.079 mm", "14.079 ± 0.001 mm");
     let found = warned(&format!("study: t\nseed: 3\nstages:{pair}{wide}"));
     assert!(found.len() == 1 && found[0].contains("; the same is true of the intervals in lines "), "{found:?}");
+    let bore = PAIR.replace("14.079 mm", "14.079 ± 0.001 mm");
+    let found = warned(&format!("study: t\nseed: 3\nstages:{bore}{wide}"));
+    assert!(found.len() == 1 && found[0].contains("; the same is true of the interval in line "), "{found:?}");
     let found = warned(&study(&[&pair, &wide], &of_pair));
     assert!(found.len() == 1 && found[0].contains("`20 um ± 3 um`") && !found[0].contains("lines"), "{found:?}");
 }

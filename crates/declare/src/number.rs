@@ -43,6 +43,12 @@ impl Printed {
     }
 }
 
+/// So many things, whose name takes an `s` if they are several: `1 row`, `2 rows`.
+#[must_use]
+pub fn counted(count: usize, name: &str) -> String {
+    format!("{count} {name}{}", if count == 1 { "" } else { "s" })
+}
+
 /// A typographic minus, and none before a zero.
 fn signed(text: &str) -> String {
     match text.strip_prefix('-') {

@@ -20,6 +20,7 @@ use super::progress::{self, tell};
 use super::shard::Told;
 use super::signals::stop_flag;
 use super::{Ending, shard};
+use declare::number::counted;
 use declare::record::Record;
 use studygraph::runner::shard::{ShardPlan, State, failed_file, ranges, state};
 use studygraph::study::Study;
@@ -171,9 +172,11 @@ impl Job<'_> {
                     .filter(|index| started.get(index).is_some_and(|times| *times >= attempts))
                     .collect();
                 if !hopeless.is_empty() {
+                    let (shards, were) = if hopeless.len() == 1 { ("shard", "was") } else { ("shards", "were") };
                     let message = format!(
-                        "shards {} were started {attempts} times and left nothing; what they said is in `{}`",
+                        "{shards} {} {were} started {} and left nothing; their output is in `{}`",
                         ranges(hopeless),
+                        counted(attempts, "time"),
                         self.folder.join("logs").display()
                     );
                     return Err(Ending::Failed(message));

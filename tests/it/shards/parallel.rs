@@ -27,7 +27,7 @@ fn gnu_parallel_runs_the_pieces_over_two_slots() {
     let (out, error) = desk.run(&words, 3);
     let said = format!("{out}{error}");
     assert_eq!(said.matches("starting 1 of 8 shards: 2").count(), 2, "{said}");
-    assert!(said.contains("shards 2 were started 2 times and left nothing; what they said is in `"), "{said}");
+    assert!(said.contains("shard 2 was started 2 times and left nothing; their output is in `"), "{said}");
 }
 
 /// A signal ends the watching with its code, and the same command goes on from there. Not that of Ctrl-C, which is ignored, and

@@ -5,10 +5,11 @@
 //! value keeps its place in the file. Lines that do not count are left out by `conditions.rs`. Must not know: fields, what any is for.
 
 use super::characters::check_merged;
-use super::conditions::{Condition, average, chosen, is_mark, is_same, is_tooth, marks, missing, of_lines};
+use super::conditions::{Condition, average, chosen, is_error, is_mark, is_same, is_tooth, marks, missing, of_lines};
 use super::document::{Content, KeyValue, Node, parse};
 use super::words::{self, quote};
 use declare::error::{Diagnostic, Place, nearest};
+use declare::number::counted;
 use declare::units::{ForeignUnit, UnitError, foreign_unit, parse_unit, symbols, with_powers};
 
 /// One cell of a line.
@@ -49,7 +50,11 @@ pub fn fields(text: &str, conditions: &[Condition]) -> Result<(Vec<KeyValue>, Pl
     for (number, line) in (1..).zip(text.split('\n')) {
         let here = Place { line: number, column: 1, offset, length: line.len() };
         offset += line.len() + 1;
-        if let Some(said) = line.trim_start().strip_prefix('#') {
+        let is_cells = |(columns, separator, _): &(Vec<Column>, char, Place)| {
+            let cells = cells(line, *separator, here);
+            cells.len() == columns.len() && is_error(cells[0].text)
+        };
+        if let Some(said) = line.trim_start().strip_prefix('#').filter(|_| !header.as_ref().is_some_and(is_cells)) {
             match missing(said) {
                 Some(list) => {
                     lists_of_marks.push((list, part(line, here, list)));
@@ -151,9 +156,8 @@ fn twice(name: &str) -> Diagnostic {
 }
 
 fn other_count(cells: usize, columns: usize, separator: char) -> Diagnostic {
-    let plural = |count: usize, word: &str| format!("{count} {word}{}", if count == 1 { "" } else { "s" });
     let are = if columns == 1 { "is" } else { "are" };
-    let message = format!("this line has {}, and there {are} {}", plural(cells, "value"), plural(columns, "column"));
+    let message = format!("this line has {}, and there {are} {}", counted(cells, "value"), counted(columns, "column"));
     if separator == ',' && cells > columns {
         Diagnostic::new(message).help("with decimal commas, part columns by `;`")
     } else {

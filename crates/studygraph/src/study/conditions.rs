@@ -7,6 +7,7 @@ use super::columns::{Cell, Column, Line};
 use super::document::{Content, Node};
 use super::words::quote;
 use declare::error::{Diagnostic, Place};
+use declare::number::counted;
 
 /// The column of files of several teeth.
 pub const TOOTH: &str = "tooth";
@@ -18,8 +19,29 @@ const FLANKS: [&str; 5] = ["flank", "side", "seite", "left/right", "l/r"];
 const MEAN: &str = "mean";
 /// Name of the line that says which marks stand for missing values.
 const MISSING: &str = "missing";
-/// Marks of missing values that are words; those without digits and letters are marks too.
-const MARKS: [&str; 9] = ["nan", "-nan", "n/a", "#n/a", "na", "null", "none", "nil", "missing"];
+/// Marks of missing values that are words, without the signs between their letters; those without digits and letters are marks too.
+const MARKS: [&str; 17] = [
+    "nan", "na", "nd", "ka", "null", "none", "nil", "missing", "void", "empty", "invalid", "error", "overflow", "ovf",
+    "inf", "infinity", "infinite",
+];
+/// Errors of spreadsheets behind a `#`, in English and in German.
+const ERRORS: [&str; 13] = [
+    "n/a",
+    "nv",
+    "value!",
+    "wert!",
+    "div/0!",
+    "num!",
+    "zahl!",
+    "null!",
+    "ref!",
+    "bezug!",
+    "name?",
+    "getting_data",
+    "spill!",
+];
+/// What C libraries of Windows print behind the point, or the comma, of a number that is none: `1.#QNAN`, `-1.#IND00`.
+const NO_NUMBERS: [&str; 4] = ["#qnan", "#snan", "#ind", "#inf"];
 /// So many nines and nothing else are a mark, not a value.
 const NINES: usize = 4;
 /// How much of the range of a column its numbers may differ between teeth at places that are the same.
@@ -104,7 +126,7 @@ pub(super) fn chosen<'a>(
             .collect();
         if let Some((other, group)) = values.iter().zip(&groups).find(|(_, group)| group.len() != groups[0].len()) {
             let (first, count) = (quote(values[0]), groups[0].len());
-            let message = format!("there are {count} lines of {first} and {} of {}", group.len(), quote(other));
+            let message = format!("{first} has {}, and {} has {}", counted(count, "line"), quote(other), group.len());
             let help = "an average needs as many of each: name one";
             return Err(Diagnostic::new(message).at(columns[at].name.place).help(help));
         }
@@ -222,7 +244,20 @@ pub(super) fn is_mark(text: &str) -> bool {
         .filter(|(_, rest)| is_all(rest, b'0') || is_all(rest, b'9'))
         .map_or(whole, |it| it.0);
     let is_nines = whole.len() >= NINES && is_all(whole, b'9');
-    has_none || is_nines || MARKS.iter().any(|mark| text.eq_ignore_ascii_case(mark))
+    let word = text.trim_start_matches(['-', '+']).to_ascii_lowercase();
+    let letters: String = word.chars().filter(|letter| !"./ <>()".contains(*letter)).collect();
+    let is_no_number = |text: &str| NO_NUMBERS.iter().any(|begin| text.starts_with(begin));
+    has_none
+        || is_nines
+        || is_error(text)
+        || MARKS.contains(&letters.as_str())
+        || word.starts_with("nan(")
+        || word.split_once(['.', ',']).is_some_and(|(whole, rest)| whole == "1" && is_no_number(rest))
+}
+
+/// Whether a text is an error of a spreadsheet, which begins as a comment does.
+pub(super) fn is_error(text: &str) -> bool {
+    text.strip_prefix('#').is_some_and(|word| ERRORS.iter().any(|error| word.eq_ignore_ascii_case(error)))
 }
 
 fn is_all(digits: &str, digit: u8) -> bool {
@@ -249,7 +284,8 @@ pub(super) fn marks(list: &str, separator: char) -> Result<Vec<&str>, Diagnostic
             (_, Some(sign)) if sign == letter => quote_sign = None,
             (',', None) => {
                 let is_digit = |letter: Option<char>| letter.is_some_and(|letter| letter.is_ascii_digit());
-                let is_decimal = is_digit(list[..at].chars().next_back()) && is_digit(list[at + 1..].chars().next());
+                let next = list[at + 1..].chars().next();
+                let is_decimal = is_digit(list[..at].chars().next_back()) && (is_digit(next) || next == Some('#'));
                 if !is_decimal {
                     marks.push(&list[start..at]);
                     start = at + 1;

@@ -76,6 +76,7 @@ pub fn without_effect(drafts: &[Draft]) -> Option<Diagnostic> {
     let (of_middle, half) = (middle(&interval.text)?, halves(&interval.text)?.1);
     let more = match others {
         [] => String::new(),
+        [(_, only)] => format!("; the same is true of the interval in line {}", only.place.line),
         others => {
             let lines: Vec<String> = others.iter().map(|(_, other)| other.place.line.to_string()).collect();
             format!("; the same is true of the intervals in lines {}", lines.join(", "))

@@ -4,6 +4,7 @@
 
 use crate::stage::Demand;
 use declare::error::{Diagnostic, suggest};
+use declare::number::counted;
 use studygraph::table::data::{Data, Table};
 use studygraph::table::schema::{Schema, Type};
 use studygraph::table::select::{CellName, check_conditions, rows_where, unknown_column};
@@ -137,7 +138,7 @@ impl Quantity {
 pub fn distance(values: &[Value], reference: &[Value]) -> Result<Distance, String> {
     let same = values.len() == reference.len() && values.iter().zip(reference).all(|(one, two)| one.row == two.row);
     if !same {
-        let counts = format!("{} rows against {}", values.len(), reference.len());
+        let counts = format!("{} against {}", counted(values.len(), "row"), reference.len());
         return Err(format!(
             "the table has other rows than with the reference settings ({counts}), so values cannot be told apart; \
              take a table whose rows do not depend on the settings"

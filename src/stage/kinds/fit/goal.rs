@@ -14,6 +14,7 @@ use crate::stage::{Demand, Named};
 use declare::Declared;
 use declare::declared::Placed;
 use declare::error::{Diagnostic, Place};
+use declare::number::counted;
 use declare::record::Record;
 use declare::units::{Dimension, in_unit, parse_unit};
 use studygraph::table::schema::Schema;
@@ -228,7 +229,7 @@ impl Goal {
         };
         if numbers.len() != self.targets.len() {
             let (rows, values) = (numbers.len(), self.targets.len());
-            let message = format!("`{}` names {rows} rows, and `value` has {values}", self.text());
+            let message = format!("`{}` names {}, and `value` has {values}", self.text(), counted(rows, "row"));
             return Err(Diagnostic::new(message)
                 .at(self.place)
                 .help("write as many values as there are rows, in their order"));

@@ -9,6 +9,7 @@ use crate::stage::formula::names_in;
 use crate::stage::operand::names::check_name;
 use declare::declared::Placed;
 use declare::error::{Diagnostic, Place};
+use declare::number::counted;
 use declare::record::Record;
 use studygraph::table::select::CellName;
 
@@ -193,7 +194,7 @@ fn check_alone(table: &PrintedTable, row: &PrintedRow) -> Result<(), Diagnostic>
 
 /// What is wrong with a field of a row that says `found` things where `wanted` are meant.
 fn miscounted(table: &PrintedTable, field: &str, found: usize, wanted: usize) -> Diagnostic {
-    let values = |count: usize| if count == 1 { "1 value".to_owned() } else { format!("{count} values") };
+    let values = |count: usize| counted(count, "value");
     if field != PrintedRow::NAMES.value {
         let one = if field == PrintedRow::NAMES.expected { "" } else { "one, or " };
         let message = format!("`{field}` lists {found} for {}", values(wanted));

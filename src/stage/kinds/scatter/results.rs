@@ -198,7 +198,8 @@ impl Tally for Results<'_> {
         let all = self.scatter.layout.samples;
         let share = 100.0 * self.invalid_samples as f64 / all as f64;
         let count = self.invalid_samples;
-        Some(format!("{count} of {all} samples ({share:.3} %) have no numbers, most often, with {row}: {reason}"))
+        let have = if count == 1 { "has" } else { "have" };
+        Some(format!("{count} of {all} samples ({share:.3} %) {have} no numbers, most often, with {row}: {reason}"))
     }
 
     fn tables(self: Box<Self>) -> Result<Vec<Table>, TableError> {

@@ -13,6 +13,7 @@ use crate::stage::rows::values::{Level, RowSet, level};
 use crate::stage::rows::{Column, follows_nothing, rows_of_part};
 use declare::digest::{Digest, Writer};
 use declare::error::{Diagnostic, Failure, Place};
+use declare::number::counted;
 use declare::record::varied::{Axis, Values};
 use declare::seed::Seed;
 use declare::units::RATIO;
@@ -320,8 +321,10 @@ fn zip(columns: &[Column]) -> Result<Rows, Diagnostic> {
     let count = all.first().map_or(0, Vec::len);
     if let Some((column, levels)) = columns.iter().zip(&all).find(|(_, levels)| levels.len() != count) {
         let (name, first) = (&column.axis.name, &columns[0].axis.name);
-        let message =
-            format!("`{name}` has {} values and `{first}` {count}; `zip` takes as many of each", levels.len());
+        let message = format!(
+            "`{name}` has {} and `{first}` {count}; `zip` takes as many of each",
+            counted(levels.len(), "value")
+        );
         return Err(Diagnostic::new(message).at(column.axis.values_place));
     }
     let mut rows: Vec<Vec<Level>> = (0..count).map(|row| all.iter().map(|levels| levels[row]).collect()).collect();

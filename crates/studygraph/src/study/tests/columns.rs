@@ -148,6 +148,71 @@ fn marks_of_missing_values_are_named_and_left_out_on_request() {
     );
 }
 
+/// What programs print for a number that is none: spreadsheets in two languages, C libraries of Windows and others, tables of words.
+#[test]
+fn marks_of_other_programs_are_known() {
+    for mark in [
+        "N.A.",
+        "n.a",
+        "n. a.",
+        "n.d.",
+        "nd",
+        "k.A.",
+        "#NV",
+        "#WERT!",
+        "#VALUE!",
+        "#DIV/0!",
+        "#ZAHL!",
+        "#NUM!",
+        "#NULL!",
+        "#REF!",
+        "1.#QNAN",
+        "1.#QNAN0",
+        "1.#IND",
+        "-1.#IND",
+        "-1.#IND00",
+        "1.#SNAN",
+        "1.#INF",
+        "-1.#INF",
+        "1,#QNAN",
+        "-1,#IND",
+        "nan(ind)",
+        "-nan(ind)",
+        "nan(snan)",
+        "NaN(0x8000)",
+        "+nan",
+        "-NaN",
+        "inf",
+        "-inf",
+        "Infinity",
+        "<NA>",
+        "(null)",
+        "missing",
+        "void",
+        "empty",
+        "invalid",
+        "error",
+        "ovf",
+        "overflow",
+    ] {
+        let text = format!("x [mm]; y [um]\n4;-1\n1;7\n5;{mark}\n6;-3\n");
+        let said = of(&text, "a.csv").concat();
+        assert!(said.starts_with(&format!("4:3: `{mark}` stands for a missing value of `y`")), "{mark}: {said}");
+        let asked = format!("# missing: {mark}\n{text}");
+        assert_eq!(of(&asked, "a.csv"), ["x: `4 mm` `1 mm` `6 mm`", "y: `-1 um` `7 um` `-3 um`"], "{mark}");
+    }
+    // A line that begins with one is no comment.
+    for mark in ["#N/A", "#NV", "#DIV/0!"] {
+        let said = of(&format!("x [mm], y [um]\n4,-1\n{mark},7\n"), "a.csv").concat();
+        assert!(said.starts_with(&format!("3:1: `{mark}` stands for a missing value of `x`")), "{said}");
+    }
+    assert_eq!(
+        of("x [mm], y [um]\n4,-1\n# N/A, see the protocol\n#no value, too\n", "a.csv"),
+        ["x: `4 mm`", "y: `-1 um`"]
+    );
+    assert!(of("x [mm]\nnano\n", "a.csv")[0].starts_with("x: `nano mm`"));
+}
+
 #[test]
 fn one_of_several_teeth_is_chosen_or_all_are_averaged() {
     let text = "tooth; x [mm]; y [um]\n1; 4; -1\n1; 5; -2\n6; 4; -3\n6; 5; -5\n";
@@ -166,7 +231,7 @@ fn one_of_several_teeth_is_chosen_or_all_are_averaged() {
         ),
         (text, "a.csv[tooth=7]", "1:1: no line has `7` in the column `tooth`; there are `1`, `6`"),
         (text, "a.csv[gear=7]", "1:1: there is no column `gear`"),
-        ("tooth, x [mm]\n1,4\n1,5\n2,4\n", "a.csv[tooth=mean]", "1:1: there are 2 lines of `1` and 1 of `2`"),
+        ("tooth, x [mm]\n1,4\n1,5\n2,4\n", "a.csv[tooth=mean]", "1:1: `1` has 2 lines, and `2` has 1"),
         (
             "tooth, x [mm], d [um]\n1,4,1\n1,5,1\n2,6,1\n2,9,1\n",
             "a.csv[tooth=mean]",

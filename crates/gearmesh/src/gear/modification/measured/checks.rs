@@ -6,6 +6,7 @@ use super::{MOST_POINTS, Measured, Smoothing, outliers};
 use crate::gear::geometry::Gear;
 use crate::gear::modification::flank::Flank;
 use declare::error::Diagnostic;
+use declare::number::counted;
 
 /// A deviation beyond this is in another unit \[m\].
 const LARGEST: f64 = 0.5e-3;
@@ -44,7 +45,8 @@ pub(super) fn consistent(stated: &Measured) -> Result<(), Diagnostic> {
     let expected: usize = ways.iter().map(|(_, places)| places.len()).product();
     if count != expected {
         let counts: Vec<String> = ways.iter().map(|(name, places)| format!("{} `{name}`", places.len())).collect();
-        let message = format!("there are {count} deviations for {}; {expected} are expected", counts.join(" times "));
+        let (are, found) = (if count == 1 { "is" } else { "are" }, counted(count, "deviation"));
+        let message = format!("there {are} {found} for {}; {expected} are expected", counts.join(" times "));
         return Err(Diagnostic::new(message).of(Measured::NAMES.deviations));
     }
     if count > MOST_POINTS {
@@ -57,9 +59,11 @@ pub(super) fn consistent(stated: &Measured) -> Result<(), Diagnostic> {
         stated.deviations.iter().enumerate().find(|(_, value)| value.is_nan() || value.abs() > LARGEST)
     {
         let message = format!("deviation {} is {}, and a deviation is 0.5 mm at the most", at + 1, millimetres(*value));
-        return Err(Diagnostic::new(message)
-            .of_item(Measured::NAMES.deviations, at)
-            .help("deviations are mostly written in micrometres: is the unit `um`?"));
+        return Err(Diagnostic::new(message).of_item(Measured::NAMES.deviations, at).help(beyond(
+            &stated.deviations,
+            LARGEST,
+            "deviations are mostly written in micrometres: is the unit `um`?",
+        )));
     }
     let largest = stated.deviations.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     if largest > 0.0 && largest < SMALLEST {
@@ -114,6 +118,18 @@ pub(super) fn consistent(stated: &Measured) -> Result<(), Diagnostic> {
     }
 }
 
+/// The remedy for deviations of which some are beyond `most` \[m\]: a unit is that of all of them, and programs write large numbers, such
+/// as 999 or 32767, for points that were not measured.
+fn beyond(deviations: &[f64], most: f64, unit: &str) -> String {
+    let count = deviations.iter().filter(|value| value.abs() > most).count();
+    if 2 * count >= deviations.len() {
+        return unit.to_owned();
+    }
+    "the others are much smaller: if the number marks a missing value, as 999 and 32767 often do, leave the point out; in a CSV file \
+     `# missing: ` and the number, above the columns, leave out every such line"
+        .to_owned()
+}
+
 /// The lines of a trace or a grid: what its places are called, the places, and which deviations are theirs. Of a grid those along the profile
 /// come first, then those across the face.
 fn lines<'a>(ways: &'a [Way<'a>], count: usize) -> impl Iterator<Item = (&'static str, &'a [f64], Vec<usize>)> {
@@ -154,8 +170,7 @@ pub(super) fn no_places() -> Diagnostic {
 fn ascending(name: &'static str, places: &[f64]) -> Result<(), Diagnostic> {
     let wrong = |message: String| Err(Diagnostic::new(message).of(name));
     if places.len() < 2 {
-        let points = if places.len() == 1 { "1 point".to_owned() } else { format!("{} points", places.len()) };
-        return wrong(format!("`{name}` has {points}; 2 are the fewest of a trace"));
+        return wrong(format!("`{name}` has {}; 2 are the fewest of a trace", counted(places.len(), "point")));
     }
     if let Some(at) = places.windows(2).position(|ends| ends[1].is_nan() || ends[1] <= ends[0]) {
         let falls = places.windows(2).filter(|ends| ends[1] < ends[0]).count();
@@ -213,9 +228,11 @@ pub(super) fn of_this_gear(stated: &Measured, gear: &Gear) -> Result<(), Diagnos
         Some(at) => {
             let [value, module] = [stated.deviations[at], own.module].map(millimetres);
             let message = format!("deviation {} is {value}, more than a tenth of the module, {module}", at + 1);
-            Err(Diagnostic::new(message)
-                .of_item(Measured::NAMES.deviations, at)
-                .help("is the unit another one, or the point beside the flank?"))
+            Err(Diagnostic::new(message).of_item(Measured::NAMES.deviations, at).help(beyond(
+                &stated.deviations,
+                most,
+                "is the unit another one, or the point beside the flank?",
+            )))
         }
     }
 }

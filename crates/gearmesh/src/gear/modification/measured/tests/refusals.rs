@@ -76,6 +76,30 @@ fn what_is_no_trace_is_refused() {
     );
 }
 
+/// Tier: invariant; one number far beyond others that are in order marks a missing value; if most are beyond, the unit is another one.
+#[test]
+fn a_number_far_beyond_the_others_marks_a_missing_value() {
+    let help = |change: &dyn Fn(&mut Measured)| {
+        let pair = pair();
+        let mut stated = profile(&pair, Side::Pinion, 100, |roll| 4e-6 * libm::sin(9.0 * roll));
+        change(&mut stated);
+        Design::default().add(Gears::Pinion, &stated, &pair).unwrap_err().help.unwrap_or_default()
+    };
+    for mark in [999e-6, -999e-6, 32767e-6, -32768e-6, 65535e-6, 0.999, 9.99e-3] {
+        let said = help(&|stated| stated.deviations[7] = mark);
+        assert!(
+            said.contains("missing value") && said.contains("# missing: ") && !said.contains("unit"),
+            "{mark}: {said}"
+        );
+    }
+    let said = help(&|stated| stated.deviations.iter_mut().step_by(3).for_each(|value| *value = 999e-6));
+    assert!(said.contains("missing value"), "{said}");
+    let said = help(&|stated| stated.deviations.iter_mut().for_each(|value| *value = 1e-3 + 1e3 * *value));
+    assert!(said.contains("is the unit `um`?") && !said.contains("missing"), "{said}");
+    let said = help(&|stated| stated.deviations[40..50].fill(400e-6));
+    assert!(said.contains("missing value"), "{said}");
+}
+
 /// A probe falls off the tip and lands on the root, touches dirt twice, or a few times: none hides another.
 #[test]
 fn spikes_are_found_wherever_and_however_many_they_are() {
