@@ -26,7 +26,7 @@ fn the_row_farthest_off_counts() {
     assert!(found.row == "a=3" && found.rank().is_infinite());
     let found = distance(&rows(&[("", 1e-9)]), &rows(&[("", 0.0)])).unwrap();
     assert!(found.relative().is_nan() && found.absolute() == 1e-9 && found.rank().is_infinite());
-    assert!(distance(&rows(&[("a=1", 1.0)]), &reference).unwrap_err().contains("1 rows against 3"));
+    assert!(distance(&rows(&[("a=1", 1.0)]), &reference).unwrap_err().contains("1 row against 3"));
     assert!(distance(&rows(&[("a=1", 1.0), ("a=2", 1.0), ("a=4", 1.0)]), &reference).is_err());
 }
 
