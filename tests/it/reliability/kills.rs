@@ -3,13 +3,16 @@
 //! By itself few moments of a study of some hundred stages; `GEARSTUDY_KILLS=50x5000` kills at 50 moments of 5,000 stages.
 //! Must not know: how entries are kept.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::{BufRead, BufReader};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use super::cache::TINY;
 use super::disk::{self, Place};
+use super::faults::thorough;
 use super::published::{differences, published};
 use studygraph::store::cache::{Cache, Lookup};
 use studygraph::store::manifest::Manifest;
@@ -122,6 +125,38 @@ fn a_run_that_is_killed_at_any_moment_is_gone_on_with() {
         let left = fs::read_dir(place.results()).unwrap().map(|entry| entry.unwrap().file_name());
         assert!(left.into_iter().all(|name| !name.to_string_lossy().starts_with('.')));
     }
+}
+
+/// Wherever a run is killed, the next one that writes removes the file that it was at.
+#[test]
+fn files_of_killed_runs_are_removed_by_the_next() {
+    fn left(folder: &Path) -> Vec<PathBuf> {
+        let entries = fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path());
+        let is_left = |path: &PathBuf| path.file_name().unwrap().to_string_lossy().starts_with(".partial-");
+        entries.flat_map(|path| if path.is_dir() { left(&path) } else { vec![path] }).filter(is_left).collect()
+    }
+    if disk::library().is_none() {
+        return;
+    }
+    let changed = TINY.replace("amount: 12 um", "amount: 13 um");
+    assert_ne!(TINY, changed);
+    let (mut places, mut at) = (BTreeSet::new(), 1);
+    loop {
+        let home = disk::folder();
+        let place = Place::new(home.path());
+        let killed = place.run(TINY, &[("SHIM_AT", at.to_string()), ("SHIM_ERROR", "-9".to_owned())]);
+        if killed.status.success() {
+            break;
+        }
+        let before = left(&place.disk);
+        places.extend(before.iter().map(|path| path.strip_prefix(&place.disk).unwrap().parent().unwrap().to_owned()));
+        let next = place.run(&changed, &[]);
+        assert!(next.status.success(), "{}", next.error);
+        assert_eq!(left(&place.disk), Vec::<PathBuf>::new(), "killed at operation {at}, which left {before:?}");
+        at += if thorough() > 0 { 1 } else { 5 };
+    }
+    let in_cache = places.iter().filter(|place| place.starts_with("cache")).count();
+    assert!(in_cache >= 2 && places.iter().any(|place| place.starts_with("results")), "{places:?}");
 }
 
 /// Two runs at once on one cache and one folder: each has its pack, and both come to the same.

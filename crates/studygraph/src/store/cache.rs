@@ -28,7 +28,7 @@ use std::fs::{self, File};
 use std::io::{Cursor, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, Once, OnceLock, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, SystemTime};
 
@@ -50,6 +50,8 @@ pub const DEFAULT: &str = ".gearstudy/cache";
 
 /// Where it is noted which studies are up to date.
 pub const NOTES: &str = "notes";
+const ENTRIES: &str = "entries";
+const JOURNALS: &str = "journals";
 
 /// Cleaning up takes less.
 const WHILE_CLEANED: Duration = Duration::from_secs(10);
@@ -68,6 +70,8 @@ pub struct Cache {
     writer: OnceLock<Option<JoinHandle<()>>>,
     /// Small entries that this run kept.
     kept: AtomicUsize,
+    /// Done once there is something to write.
+    swept: Once,
 }
 
 /// So many small entries of a run have files of their own.
@@ -133,7 +137,8 @@ impl Cache {
 
     fn new(root: &Path, lock: Option<File>, unkept: Unkept) -> Self {
         let (unkept, packs) = (Mutex::new(unkept), Arc::new(Packs::new(root)));
-        Self { root: root.to_owned(), lock, unkept, packs, writer: OnceLock::new(), kept: AtomicUsize::new(0) }
+        let (writer, kept, swept) = (OnceLock::new(), AtomicUsize::new(0), Once::new());
+        Self { root: root.to_owned(), lock, unkept, packs, writer, kept, swept }
     }
 
     fn create(root: &Path, lock: &Path) -> Result<File, StoreError> {
@@ -185,7 +190,29 @@ impl Cache {
 
     fn path(&self, key: Digest) -> PathBuf {
         let name = key.to_string();
-        self.root.join("entries").join(&name[..2]).join(&name[2..])
+        self.root.join(ENTRIES).join(&name[..2]).join(&name[2..])
+    }
+
+    /// Writes a file, making its folder; an empty folder in its place goes. The first time files that killed runs left are
+    /// removed: a run that writes nothing looks for none.
+    fn replace(&self, path: &Path, bytes: &[u8], durability: Durability) -> Result<(), StoreError> {
+        self.swept.call_once(|| self.sweep());
+        let folder = path.parent().unwrap_or(path);
+        fs::create_dir_all(folder).map_err(StoreError::io("make the cache folder", folder))?;
+        let written = file::write(path, bytes, durability);
+        // What is not empty is somebody's, and stays.
+        if written.is_err() && fs::remove_dir(path).is_ok() {
+            return file::write(path, bytes, durability);
+        }
+        written
+    }
+
+    fn sweep(&self) {
+        let upper = ["", ENTRIES, JOURNALS, NOTES, packs::FOLDER].map(|folder| self.root.join(folder));
+        // A folder that cannot be read is swept by a later run.
+        let of_entries = presence::entries(&self.root.join(ENTRIES)).unwrap_or_default();
+        let of_entries = of_entries.into_iter().filter(|(_, kind)| kind.is_dir()).map(|(path, _)| path);
+        upper.into_iter().chain(of_entries).for_each(|folder| file::sweep_ended(&folder));
     }
 
     /// What is known about a key, without reading tables.
@@ -256,7 +283,9 @@ impl Cache {
             earlier.agree(entry)?;
         }
         if self.lock.is_some() {
-            let Err(error) = replace(&self.path(entry.key), &bytes, Durability::Synced) else { return Ok(()) };
+            let Err(error) = self.replace(&self.path(entry.key), &bytes, Durability::Synced) else {
+                return Ok(());
+            };
             // Computed again although it was there: that file may serve the next run as well.
             if !self.is_unkept(entry.key) && self.is_sound(entry.key) {
                 return Ok(());
@@ -345,7 +374,7 @@ impl Cache {
     /// Where the journal of a study lies.
     #[must_use]
     pub fn journal_path(&self, study: &str) -> PathBuf {
-        self.root.join("journals").join(format!("{study}.json"))
+        self.root.join(JOURNALS).join(format!("{study}.json"))
     }
 
     /// The journal of a study; an empty one when there is none that can be read.
@@ -387,7 +416,7 @@ impl Cache {
             return;
         }
         let path = self.journal_path(study);
-        if let Err(error) = replace(&path, &journal.bytes(), Durability::Lazy) {
+        if let Err(error) = self.replace(&path, &journal.bytes(), Durability::Lazy) {
             self.unkept().journal = Some(error.to_string());
         }
     }
@@ -402,16 +431,4 @@ impl Drop for Cache {
         }
         self.packs.flush();
     }
-}
-
-/// Writes a file, making its folder; an empty folder in its place goes.
-fn replace(path: &Path, bytes: &[u8], durability: Durability) -> Result<(), StoreError> {
-    let folder = path.parent().unwrap_or(path);
-    fs::create_dir_all(folder).map_err(StoreError::io("make the cache folder", folder))?;
-    let written = file::write(path, bytes, durability);
-    // What is not empty is somebody's, and stays.
-    if written.is_err() && fs::remove_dir(path).is_ok() {
-        return file::write(path, bytes, durability);
-    }
-    written
 }

@@ -3,13 +3,14 @@
 //! Written under a temporary name in the same folder and renamed. The folder itself is not fsynced: should a power cut
 //! undo the rename, the file is missing, which every reader of these files is ready for. Must not know: contents.
 
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::error::StoreError;
+use super::lock;
 use crate::presence;
 
 /// How temporary files begin; whatever is left of a killed run is told by it.
@@ -87,31 +88,54 @@ pub fn link(path: &Path, bytes: &[u8]) -> io::Result<()> {
     linked
 }
 
-/// A new file under a temporary name that anybody may read once it has its own.
+/// A new file under a temporary name that anybody may read once it has its own. It is locked while it is written, where files
+/// can be locked, and its name says where: [`sweep_ended`] knows by both what a killed process left.
 fn begin(folder: &Path) -> io::Result<(File, PathBuf)> {
     static NUMBER: AtomicU64 = AtomicU64::new(0);
     let mut options = File::options();
     options.write(true).create_new(true);
     #[cfg(unix)]
     std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o644);
+    let Origin { space, boot, computer } = origin();
     loop {
         let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-        let path = folder.join(format!("{TEMPORARY}{}-{}-{number}", space(), std::process::id()));
-        match options.open(&path) {
+        let name = format!("{TEMPORARY}{space}-{}-{number}-{boot}-{computer}", std::process::id());
+        let path = folder.join(name);
+        let file = match options.open(&path) {
             // Left behind by a killed process of the same number, or one of another host's.
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
-            opened => return Ok((opened?, path)),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
+            opened => opened?,
+        };
+        // Another process takes it for one that was left, as it is not locked yet, or has removed it already.
+        let is_taken = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
+        if !is_taken && !matches!(presence::link_metadata(&path), Ok(None)) {
+            return Ok((file, path));
         }
     }
 }
 
-/// Names what numbers of processes mean something in: a start of a computer, in it a container. Empty where it is not known.
-fn space() -> &'static str {
-    static SPACE: OnceLock<String> = OnceLock::new();
-    SPACE.get_or_init(|| {
-        let boot = fs::read_to_string("/proc/sys/kernel/random/boot_id");
-        let (Ok(boot), Ok(container)) = (boot, fs::read_link("/proc/self/ns/pid")) else { return String::new() };
-        blake3::hash(format!("{boot}{}", container.display()).as_bytes()).to_hex()[..8].to_owned()
+/// Digests of the places that a process has its number in; empty where one is not known.
+struct Origin {
+    /// A container in a start of a computer: numbers of processes mean something in it.
+    space: String,
+    boot: String,
+    /// Of one name, and of an installation that has an identifier.
+    computer: String,
+}
+
+fn origin() -> &'static Origin {
+    static ORIGIN: OnceLock<Origin> = OnceLock::new();
+    ORIGIN.get_or_init(|| {
+        let digest = |parts: &[&str]| match parts {
+            parts if parts.iter().any(|part| part.is_empty()) => String::new(),
+            parts => blake3::hash(parts.concat().as_bytes()).to_hex()[..8].to_owned(),
+        };
+        let owner = lock::Owner::current();
+        Origin {
+            space: digest(&[&owner.boot, "\n", &owner.space]),
+            boot: digest(&[&owner.boot]),
+            computer: digest(&[&owner.host, &owner.machine]),
+        }
     })
 }
 
@@ -119,6 +143,17 @@ fn space() -> &'static str {
 pub const MOST_MANIFEST: u64 = 64 << 20;
 /// Bytes of a table, a page, a figure.
 pub const MOST_TABLE: u64 = 4 << 30;
+/// Bytes of a pointer of Git LFS, by its specification.
+pub const MOST_POINTER: u64 = 1024;
+
+/// A phrase that follows the name of a file of Git LFS of which the contents were not fetched.
+pub const POINTER: &str = "is a pointer of Git LFS: `git lfs pull` fetches it";
+
+/// Whether a file of Git LFS has these bytes before its contents are fetched.
+#[must_use]
+pub fn is_pointer(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"version https://git-lfs.github.com/spec/")
+}
 
 /// Reads a whole file of at most `maximum` bytes.
 ///
@@ -159,23 +194,46 @@ pub fn sweep(folder: &Path) {
     }
 }
 
-/// The same in a folder that others may write to now: removes files of processes of this computer that have ended. A leftover that
-/// is not found or cannot be removed does no harm.
+/// The same in a folder that others may write to now: removes files of processes that have ended. A leftover that is not found
+/// or cannot be removed does no harm.
 pub fn sweep_ended(folder: &Path) {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    for (path, _) in presence::entries(folder).unwrap_or_default() {
-        let process = || {
-            let (space, rest) = path.file_name()?.to_str()?.strip_prefix(TEMPORARY)?.split_once('-')?;
-            let process: u32 = rest.split_once('-')?.0.parse().ok()?;
-            (!space.is_empty() && space == self::space()).then_some(process)
-        };
-        let is_gone = |process: u32| {
-            presence::metadata(Path::new(&format!("/proc/{process}"))).is_ok_and(|found| found.is_none())
-        };
-        if process().is_some_and(is_gone) {
-            let _ = fs::remove_file(&path);
+    for (path, kind) in presence::entries(folder).unwrap_or_default() {
+        let name = path.file_name().and_then(|name| name.to_str()).and_then(|name| name.strip_prefix(TEMPORARY));
+        if let Some(name) = name.filter(|_| kind.is_file()) {
+            remove_ended(&path, name);
         }
     }
+}
+
+/// None where the process that wrote the file may live.
+fn remove_ended(path: &Path, name: &str) -> Option<()> {
+    let mut parts = name.split('-');
+    let (space, process) = (parts.next()?, parts.next()?.parse().ok()?);
+    let (boot, computer) = (parts.nth(1).unwrap_or_default(), parts.next().unwrap_or_default());
+    let own = origin();
+    let is = |one: &str, other: &str| !one.is_empty() && one == other;
+    let (same_space, same_boot) = (is(space, &own.space), is(boot, &own.boot));
+    let mut lock = None;
+    if same_space || same_boot {
+        if same_space && lock::lives(process) {
+            return None;
+        }
+        // A process of another user may be hidden, and its files are not opened.
+        let file = File::options().read(true).write(true).open(path).ok()?;
+        match file.try_lock() {
+            Ok(()) => lock = Some(file),
+            // Files cannot be locked here.
+            Err(TryLockError::Error(_)) if same_space => {}
+            Err(_) => return None,
+        }
+    } else if !is(computer, &own.computer) || boot.is_empty() || own.boot.is_empty() {
+        // Of another computer nothing is known; this one was started anew.
+        return None;
+    }
+    let removed = fs::remove_file(path).ok();
+    drop(lock);
+    removed
 }
 
 #[cfg(test)]
@@ -201,8 +259,9 @@ mod tests {
         assert!(refused.contains("cannot write `") && refused.contains("b`"), "{refused}");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
         // What another process of the same number left behind is passed over.
+        let Origin { space, boot, computer } = origin();
         for number in 0..1000 {
-            let name = format!("{TEMPORARY}{}-{}-{number}", space(), std::process::id());
+            let name = format!("{TEMPORARY}{space}-{}-{number}-{boot}-{computer}", std::process::id());
             fs::write(folder.path().join(name), "left").unwrap();
         }
         write(&path, b"three", Durability::Lazy).unwrap();
@@ -216,16 +275,55 @@ mod tests {
     #[test]
     fn what_ended_processes_left_is_removed() {
         let folder = tempfile::tempdir().unwrap();
-        let mut ended = std::process::Command::new("true").spawn().unwrap();
-        ended.wait().unwrap();
-        let (own, ended) = (std::process::id(), ended.id());
-        let names = [format!("{}-{own}-1", space()), format!("0badc0de-{ended}-1"), format!("{}-{ended}-1", space())];
-        for name in &names {
-            fs::write(folder.path().join(format!("{TEMPORARY}{name}")), "left").unwrap();
+        let mut zombie = std::process::Command::new("true").spawn().unwrap();
+        let ended = zombie.id();
+        while lock::lives(ended) {
+            std::thread::sleep(std::time::Duration::from_millis(1));
         }
+        let (living, Origin { space, boot, computer }) = (std::process::id(), origin());
+        let other = "0badc0de";
+        let cases = [
+            (format!("{space}-{living}-1"), true),
+            (format!("{space}-{ended}-1"), false),
+            (format!("{space}-{ended}-2-{boot}-{computer}"), false),
+            // Of a container that is gone, and of one with a process that writes.
+            (format!("{other}-{living}-1-{boot}-{computer}"), false),
+            (format!("{other}-{living}-2-{boot}-{computer}"), true),
+            // Of another computer, of one that is not known, and of this one before it was started anew.
+            (format!("{other}-{ended}-1"), true),
+            (format!("{other}-{ended}-1-{other}-{other}"), true),
+            (format!("{other}-{ended}-1-{other}-"), true),
+            (format!("{other}-{living}-1-{other}-{computer}"), computer.is_empty()),
+            ("x".to_owned(), true),
+        ];
+        let path = |name: &str| folder.path().join(format!("{TEMPORARY}{name}"));
+        for (name, _) in &cases {
+            fs::write(path(name), "left").unwrap();
+        }
+        let writing = File::open(path(&cases[4].0)).unwrap();
+        writing.lock().unwrap();
         sweep_ended(folder.path());
-        let is_left = names.map(|name| folder.path().join(format!("{TEMPORARY}{name}")).exists());
-        assert_eq!(is_left, [true, true, false]);
+        for (name, stays) in &cases {
+            assert_eq!(path(name).exists(), *stays, "{name}");
+        }
+        zombie.wait().unwrap();
+    }
+
+    /// A file is new for a moment before it is locked.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn what_is_written_while_others_sweep_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, path) = begin(folder.path()).unwrap();
+        // As a process of another container sees it.
+        let name = path.file_name().unwrap().to_str().unwrap().replacen(&origin().space, "0badc0de", 1);
+        let seen = folder.path().join(name);
+        fs::rename(&path, &seen).unwrap();
+        sweep_ended(folder.path());
+        assert!(seen.exists());
+        drop(file);
+        sweep_ended(folder.path());
+        assert!(!seen.exists());
     }
 
     /// Neither is opened: a pipe would be waited for, a device has no end.

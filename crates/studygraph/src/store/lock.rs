@@ -48,20 +48,20 @@ pub struct Lock {
 pub struct Owner {
     pub host: String,
     /// Tells apart computers of one name, where the system has such a thing.
-    machine: String,
+    pub(super) machine: String,
     /// Another one after every start of the computer; shared by its containers. Empty where it is not known.
-    boot: String,
+    pub(super) boot: String,
     pub process: u32,
     /// When the process began, in ticks since the start of the computer: numbers of processes come again.
     started: u64,
     /// In which numbers of processes mean anything: containers count for themselves.
-    space: String,
+    pub(super) space: String,
     /// UTC, RFC 3339.
     since: String,
 }
 
 impl Owner {
-    fn current() -> Self {
+    pub(super) fn current() -> Self {
         let text = |path: &str| fs::read_to_string(path).unwrap_or_default().trim().to_owned();
         let named = |name: &str| std::env::var(name).ok();
         let host = Some(text("/proc/sys/kernel/hostname")).filter(|host| !host.is_empty());
@@ -97,6 +97,11 @@ impl Owner {
 #[must_use]
 pub fn boot() -> String {
     fs::read_to_string("/proc/sys/kernel/random/boot_id").unwrap_or_default().trim().to_owned()
+}
+
+/// Whether there is such a process in this container, and not only what is left of it.
+pub(super) fn lives(process: u32) -> bool {
+    started(process).is_some()
 }
 
 /// When a process began, in ticks since the computer was started; none when there is no such process that lives.

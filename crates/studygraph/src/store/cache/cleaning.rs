@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use super::packs::{self, FOLDER, Packs};
-use super::{Cache, NOTES};
+use super::{Cache, ENTRIES, JOURNALS, NOTES};
 use crate::presence;
 use crate::store::error::StoreError;
 use crate::store::file::{self, TEMPORARY};
@@ -257,7 +257,7 @@ fn there<T>(result: io::Result<T>) -> io::Result<Option<T>> {
 /// The keys that the journals name, and when a run last used them.
 fn journals(root: &Path) -> Result<BTreeMap<Digest, SystemTime>, StoreError> {
     let mut keys = BTreeMap::new();
-    for (path, _) in list(&root.join("journals"))? {
+    for (path, _) in list(&root.join(JOURNALS))? {
         let bytes = match file::read(&path, file::MOST_MANIFEST) {
             // What is not a journal names nothing.
             Err(error) if error.kind() == ErrorKind::InvalidData => continue,
@@ -281,7 +281,7 @@ fn content(root: &Path) -> Result<Content, StoreError> {
     let packs = list(&root.join(FOLDER))?;
     let foreign = packs.into_iter().filter(|(path, kind)| !is_leftover(path, *kind) && packs::number(path).is_none());
     content.foreign.extend(foreign.map(|(path, _)| path));
-    for folder in [root.to_owned(), root.join("journals"), root.join(FOLDER), root.join(NOTES)] {
+    for folder in [root.to_owned(), root.join(JOURNALS), root.join(FOLDER), root.join(NOTES)] {
         let left = list(&folder)?.into_iter().filter(|(path, kind)| is_leftover(path, *kind));
         content.leftovers.extend(left.map(|(path, _)| path));
     }
@@ -302,7 +302,7 @@ impl Content {
                 Vec::new()
             })
         };
-        for (folder, kind) in look(&root.join("entries")) {
+        for (folder, kind) in look(&root.join(ENTRIES)) {
             let start = name(&folder);
             if is_leftover(&folder, kind) {
                 self.leftovers.push(folder);

@@ -116,6 +116,36 @@ fn cleaning_keeps_what_journals_name_and_waits_for_nobody() {
     assert_eq!(counts(Cache::clean(&folder.path().join("none"), Remove::All, false).unwrap()), (0, 0, 0));
 }
 
+/// A run that writes nothing looks for none; files of others that live stay.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_that_writes_removes_what_killed_runs_left() {
+    let folder = tempfile::tempdir().unwrap();
+    drop(filled(folder.path()));
+    let cache = Cache::open(folder.path()).unwrap();
+    let own = cache.path(key("b")).parent().unwrap().to_owned();
+    let folders = [folder.path().to_owned(), own]
+        .into_iter()
+        .chain(["entries", "journals", "notes", "packs"].map(|name| folder.path().join(name)));
+    let boot = blake3::hash(lock::boot().as_bytes()).to_hex()[..8].to_owned();
+    let (mut left, mut others) = (Vec::new(), Vec::new());
+    for folder in folders {
+        fs::create_dir_all(&folder).unwrap();
+        // Of a container that is gone, and of another computer.
+        for (files, name) in
+            [(&mut left, format!("0badc0de-1-0-{boot}-")), (&mut others, "0badc0de-1-0-0-0".to_owned())]
+        {
+            files.push(folder.join(format!(".partial-{name}")));
+            fs::write(files.last().unwrap(), "left").unwrap();
+        }
+    }
+    assert!(matches!(cache.look_up(key("a")), Lookup::Found(_)));
+    assert!(left.iter().all(|path| path.exists()), "without a write");
+    cache.put(key("b"), &[&everything(3)], OfRun::default()).unwrap();
+    assert_eq!(left.iter().filter(|path| path.exists()).count(), 0, "{left:?}");
+    assert!(others.iter().all(|path| path.exists()));
+}
+
 #[test]
 fn a_folder_that_cannot_be_made_is_one_clear_error() {
     let folder = tempfile::tempdir().unwrap();
