@@ -4,6 +4,7 @@
 //! alone. So it does not matter who started it, or how often, and the same command goes on from where it was. Must not
 //! know: what a shard holds, how any engine is spoken to.
 
+mod answer;
 pub(super) mod kubernetes;
 mod parallel;
 mod profile;

@@ -13,6 +13,7 @@ use std::time::{Duration, Instant};
 
 use super::super::Ending;
 use super::super::arguments::Places;
+use super::answer::{NO_ANSWER, is_passing, job_number};
 use super::profile::{maybe_number, number, words};
 use super::{Job, Starter, made, program, quoted};
 use declare::record::Record;
@@ -30,27 +31,8 @@ const LONGEST_PAUSE: Duration = Duration::from_mins(1);
 const LOOK: Duration = Duration::from_millis(100);
 /// How often it is looked whether a command has ended.
 const ENDED: Duration = Duration::from_millis(10);
-/// What is said of a command that does not end.
-const NO_ANSWER: &str = "no answer in";
 /// Characters of an answer that is shown.
 const SHOWN: usize = 200;
-/// What sbatch says where it, or the site's limit on jobs, refuses for the moment. All else is wrong with the job.
-const PASSING: [&str; 13] = [
-    NO_ANSWER,
-    "timed out",
-    "timeout",
-    "unable to contact",
-    "connection refused",
-    "connection reset",
-    "communication connection failure",
-    "temporarily unavailable",
-    "temporarily disabled",
-    "zero bytes were transmitted",
-    "slurm backup controller in standby mode",
-    "too many",
-    "limit",
-];
-
 pub(super) struct Slurm<'a> {
     job: &'a Job<'a>,
     profile: &'a Record,
@@ -60,6 +42,8 @@ pub(super) struct Slurm<'a> {
     stop: &'a AtomicBool,
     /// The shards that were in the queue when it was seen last, or were submitted since.
     queued: BTreeSet<usize>,
+    /// Their jobs and that of the merge: what their names have behind that of the plan, and the numbers that are known.
+    jobs: BTreeSet<(String, Option<String>)>,
 }
 
 /// An element of a job in the queue.
@@ -90,7 +74,8 @@ impl<'a> Slurm<'a> {
     pub(super) fn new(job: &'a Job<'a>, profile: &'a Record, stop: &'a AtomicBool) -> Result<Self, Ending> {
         made(&job.folder.join("logs"))?;
         let program = program(profile)?;
-        let mut slurm = Self { job, profile, array_size: ARRAY_SIZE, program, stop, queued: BTreeSet::new() };
+        let (queued, jobs) = (BTreeSet::new(), BTreeSet::new());
+        let mut slurm = Self { job, profile, array_size: ARRAY_SIZE, program, stop, queued, jobs };
         let said = slurm.patiently(|slurm| slurm.ask("scontrol", &["show".into(), "config".into()], None))?;
         let site =
             said.lines().find_map(|line| line.strip_prefix("MaxArraySize")?.split('=').nth(1)?.trim().parse().ok());
@@ -127,16 +112,16 @@ impl<'a> Slurm<'a> {
         }
     }
 
-    /// Submits a script; the number of its job. `is_there` finds it in the queue: sbatch may have failed after the job was
-    /// taken.
+    /// Submits a script for these shards; the number of its job. `is_there` finds it in the queue: sbatch may have failed after
+    /// the job was taken.
     fn submit(
-        &self,
+        &mut self,
         name: &str,
-        options: &[String],
-        script: &str,
+        (options, script): (&[String], &str),
+        shards: &[usize],
         is_there: &dyn Fn(&Element) -> bool,
     ) -> Result<String, Ending> {
-        let mut all = vec!["--parsable".to_owned(), format!("--job-name={name}")];
+        let mut all = vec!["--parsable".to_owned(), format!("--job-name={}{name}", self.prefix())];
         for (field, option) in [("partition", "partition"), ("account", "account"), ("time", "time"), ("memory", "mem")]
         {
             all.extend(self.profile.maybe_text(field).map(|value| format!("--{option}={value}")));
@@ -147,11 +132,11 @@ impl<'a> Slurm<'a> {
         let before = self.profile.maybe_text("before").map(|line| format!("{line}\n")).unwrap_or_default();
         let script = format!("#!/bin/sh\n{before}{script}\n");
         let mut is_first = true;
-        self.patiently(|slurm| {
+        let taken = self.patiently(|slurm| {
             if !std::mem::take(&mut is_first)
                 && let Some(found) = slurm.queue_once()?.into_iter().find(is_there)
             {
-                return Ok(found.job.unwrap_or_default());
+                return Ok(Ok(found.job.unwrap_or_default()));
             }
             let said = match slurm.ask("sbatch", &all, Some(&script)) {
                 // What is wrong with the job is so every time.
@@ -161,16 +146,18 @@ impl<'a> Slurm<'a> {
                 said => said?,
             };
             if let Some(job) = job_number(&said) {
-                return Ok(job.to_owned());
+                return Ok(Ok(job.to_owned()));
             }
             // The job was taken, so another one is not sent for it.
             if let Some(job) = slurm.queue_once()?.into_iter().find(is_there).and_then(|found| found.job) {
-                return Ok(job);
+                return Ok(Ok(job));
             }
             let said: String = said.trim().escape_debug().take(SHOWN).collect();
-            let problem = format!("`sbatch` did not say the number of its job as its last line, but `{said}`");
-            Err(Unanswered::Final(Ending::Usage(problem)))
-        })
+            Ok(Err(format!("`sbatch` did not say the number of its job as its last line, but `{said}`")))
+        })?;
+        self.queued.extend(shards);
+        self.jobs.insert((name.to_owned(), taken.clone().ok().filter(|job| !job.is_empty())));
+        taken.map_err(Ending::Usage)
     }
 
     /// Submits arrays for these shards; the numbers of the jobs.
@@ -195,8 +182,7 @@ impl<'a> Slurm<'a> {
                 number(self.profile, "processors")
             );
             let is_there = |found: &Element| found.shard().is_some_and(|shard| block.contains(&shard));
-            jobs.push(self.submit(&format!("{}{first}", self.prefix()), &options, &script, &is_there)?);
-            self.queued.extend(block);
+            jobs.push(self.submit(&first.to_string(), (&options, &script), block, &is_there)?);
         }
         Ok(jobs)
     }
@@ -213,7 +199,8 @@ impl<'a> Slurm<'a> {
             return Err(Ending::Usage(format!("{}: {}", job.plan.study, self.with_merge(merge))));
         }
         let chained = self.chained(places, &queue);
-        chained.map_err(|ending| job.given_up(ending, &self.in_queue(" without a merge")))
+        let has_merge = self.jobs.iter().any(|(name, _)| name == MERGE);
+        chained.map_err(|ending| job.given_up(ending, &self.in_queue(if has_merge { "" } else { " without a merge" })))
     }
 
     /// That a chain is in the queue to its end.
@@ -223,10 +210,8 @@ impl<'a> Slurm<'a> {
             none if none.is_empty() => (String::new(), "is", "goes", "it"),
             some => (format!("shards {} and ", ranges(some.iter().copied())), "are", "go", "them"),
         };
-        let prefix = self.prefix();
-        format!(
-            "{shards}the merge{number} {is} in the queue already and {go} on (`scancel --me --name={prefix}…` ends {them})"
-        )
+        let cancel = self.cancel();
+        format!("{shards}the merge{number} {is} in the queue already and {go} on (`{cancel}` ends {them})")
     }
 
     fn chained(&mut self, places: &Places, queue: &[Element]) -> Result<(), Ending> {
@@ -271,7 +256,7 @@ impl<'a> Slurm<'a> {
             options.extend([format!("--dependency=afterok:{after}"), "--kill-on-invalid-dep=yes".to_owned()]);
         }
         let is_there = |found: &Element| found.name == MERGE;
-        let merge = self.submit(&format!("{}{MERGE}", self.prefix()), &options, &script, &is_there)?;
+        let merge = self.submit(MERGE, (&options, &script), &[], &is_there)?;
         let shards = if all.is_empty() { String::new() } else { format!("jobs {} for the shards, ", all.join(", ")) };
         self.job.tell(&format!("submitted: {shards}job {merge} for the merge; `{}`", self.job.folder.display()));
         Ok(())
@@ -281,6 +266,7 @@ impl<'a> Slurm<'a> {
     fn queue(&mut self) -> Result<Vec<Element>, Ending> {
         let queue = self.patiently(Self::queue_once)?;
         self.queued = queue.iter().filter_map(Element::shard).collect();
+        self.jobs = queue.iter().map(|found| (found.name.clone(), found.job.clone())).collect();
         Ok(queue)
     }
 
@@ -347,13 +333,32 @@ impl<'a> Slurm<'a> {
         Err(Unanswered::Passing(wrong(said)))
     }
 
-    /// Which shards are in the queue, and what ends them.
+    /// Which jobs are in the queue, with their shards, and what ends them.
     fn in_queue(&self, how: &str) -> String {
-        if self.queued.is_empty() {
+        if self.jobs.is_empty() {
             return String::new();
         }
-        let (shards, prefix) = (ranges(self.queued.iter().copied()), self.prefix());
-        format!("shards {shards} are in the queue{how} and go on (`scancel --me --name={prefix}…` ends them); ")
+        let named = |(name, job): &(String, Option<String>)| match job {
+            Some(job) => job.clone(),
+            None => format!("`{}{name}`", self.prefix()),
+        };
+        let jobs: Vec<String> = self.jobs.iter().map(named).collect();
+        let (jobs, cancel) = (jobs.join(", "), self.cancel());
+        let (is, go, them) = if self.jobs.len() == 1 { ("job", "goes", "it") } else { ("jobs", "go", "them") };
+        let shards = match &self.queued {
+            none if none.is_empty() => String::new(),
+            some => format!("shards {} are in the queue{how}: ", ranges(some.iter().copied())),
+        };
+        format!("{shards}{is} {jobs} {go} on (`{cancel}` ends {them}); ")
+    }
+
+    /// The command that ends all jobs in the queue: by their numbers, and by name where these are not known.
+    fn cancel(&self) -> String {
+        let numbers: Vec<&str> = self.jobs.iter().filter_map(|(_, job)| job.as_deref()).collect();
+        let by_number = (!numbers.is_empty()).then(|| format!("scancel {}", numbers.join(" ")));
+        let nameless = self.jobs.iter().filter(|(_, job)| job.is_none());
+        let by_name = nameless.map(|(name, _)| format!("scancel --me --name={}{name}", self.prefix()));
+        by_number.into_iter().chain(by_name).collect::<Vec<_>>().join("; ")
     }
 }
 
@@ -363,21 +368,6 @@ fn written(file: &mut File) -> io::Result<String> {
     file.rewind()?;
     file.read_to_end(&mut bytes)?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
-}
-
-/// The number of the job that sbatch has taken: the last line that is `number` or `number;cluster`. Sites print more before.
-fn job_number(said: &str) -> Option<&str> {
-    let number = |line: &str| {
-        let (number, cluster) = line.split_once(';').unwrap_or((line, "-"));
-        let is_number = !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit());
-        (is_number && !cluster.is_empty() && !cluster.contains(char::is_whitespace)).then_some(number.len())
-    };
-    said.lines().rev().map(str::trim).find_map(|line| number(line).map(|length| &line[..length]))
-}
-
-fn is_passing(problem: &str) -> bool {
-    let problem = problem.to_ascii_lowercase();
-    PASSING.iter().any(|words| problem.contains(words))
 }
 
 impl Starter for Slurm<'_> {
@@ -395,40 +385,5 @@ impl Starter for Slurm<'_> {
 
     fn leave(&mut self) -> String {
         self.in_queue("")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{is_passing, job_number};
-
-    /// sbatch(1), `--parsable`: the number, and behind a semicolon the cluster if there is one.
-    #[test]
-    fn the_number_of_a_job_is_the_last_line_that_is_one() {
-        for (said, expected) in [
-            ("101\n", Some("101")),
-            ("101;ci\n", Some("101")),
-            ("-----\n  Welcome to the site\n-----\n101\n", Some("101")),
-            ("No reservation 7\n 101;ci \n\nbye\n", Some("101")),
-            ("-----\n", None),
-            ("", None),
-            ("Submitted batch job 101\n", None),
-            ("101;\n", None),
-            ("101; two words\n", None),
-        ] {
-            assert_eq!(job_number(said), expected, "{said:?}");
-        }
-    }
-
-    #[test]
-    fn a_busy_service_is_told_from_a_wrong_job() {
-        for passing in [
-            "`sbatch`: sbatch: error: Batch job submission failed: Socket timed out on send/recv operation",
-            "`sbatch`: sbatch: error: AssocMaxSubmitJobLimit; Job violates accounting/QOS policy (job submit limit, …)",
-            "`sbatch`: Unable to contact slurm controller (connect failure)",
-        ] {
-            assert!(is_passing(passing), "{passing}");
-        }
-        assert!(!is_passing("`sbatch`: error: invalid partition specified: no_such"));
     }
 }

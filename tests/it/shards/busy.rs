@@ -9,7 +9,7 @@ use super::{assert_as_local, swept};
 use crate::desk::Desk;
 
 /// `FAIL_sbatch` and so on: the calls that fail, by their numbers; `HANG_sbatch`: those that never end; `TAKEN`: sbatch takes the job before it fails; `WRONG`: it
-/// says that the job is wrong; `BANNER`: it prints one.
+/// says that the job is wrong; `BANNER`: it prints one; `WORDS`: it says the number in words, and the queue does not show the job yet.
 const STAND_IN: &str = r#"#!/bin/sh
 called=$(basename "$0"); cd "$QUEUE" || exit 9
 n=$(($(cat $called.count 2>/dev/null || echo 0) + 1)); echo $n > $called.count; echo "$@" >> $called.log
@@ -30,13 +30,13 @@ sbatch)
     [ -n "$TAKEN" ] || fail
     for word; do case $word in --job-name=*) name=${word#*=};; --array=*) array=${word#*=};; esac; done
     for part in $(echo "$array" | tr , ' '); do for i in $(seq ${part%-*} ${part#*-}); do
-        if [ -n "$HOLD" ]; then echo "$name|$i|$((100 + n))" >> queue
+        if [ -n "$WORDS" ]; then :; elif [ -n "$HOLD" ]; then echo "$name|$i|$((100 + n))" >> queue
         else SLURM_ARRAY_TASK_ID=$i sh script.$n > log.$n.$i 2>&1; fi
     done; done
     [ -n "$array" ] || echo "$name|N/A|$((100 + n))" >> queue
     fail
     [ -z "$BANNER" ] || printf -- '-----------\n  Welcome to job 7\n-----------\n'
-    echo $((100 + n));;
+    if [ -n "$WORDS" ]; then echo "Submitted batch job $((100 + n))"; else echo $((100 + n)); fi;;
 esac
 "#;
 
@@ -94,6 +94,29 @@ fn a_banner_is_not_the_number_of_a_job() {
     let (code, said) = site.run(&site_yaml(true), &[("HOLD", "1"), ("BANNER", "1")]);
     assert!(code == Some(0) && said.contains("submitted: jobs 101 for the shards, job 102 for the merge"), "{said}");
     assert!(site.lines("sbatch.log")[1].contains("--dependency=afterok:101 "), "{:?}", site.lines("sbatch.log"));
+}
+
+/// A job that was taken is named, with the command that ends it, also where its number is not known.
+#[test]
+fn jobs_that_are_queued_are_named_when_the_number_of_the_next_is_not() {
+    for detach in [true, false] {
+        let site = Site::new();
+        let (code, said) = site.run(&site_yaml(detach), &[("WORDS", "1")]);
+        let name =
+            site.lines("sbatch.log")[0].split("--job-name=").nth(1).unwrap().split(' ').next().unwrap().to_owned();
+        let queued = if detach { "shards 0-3 are in the queue without a merge" } else { "shards 0-3 are in the queue" };
+        let ends =
+            format!("{queued}: job `{name}` goes on (`scancel --me --name={name}` ends it); the same command goes on");
+        assert!(code == Some(1) && said.contains("but `Submitted batch job 101`") && said.contains(&ends), "{said}");
+    }
+    // The merge alone, after the shards said theirs.
+    let site = Site::new();
+    let stand_in = STAND_IN.replace("$WORDS", "$(echo \"$name\" | grep merge)");
+    fs::write(site.0.path("bin/sbatch"), stand_in.replace("|N/A|", "|N/A|none")).unwrap();
+    let (code, said) = site.run(&site_yaml(true), &[("HOLD", "1")]);
+    assert!(code == Some(1) && said.contains("`Submitted batch job 102`"), "{said}");
+    assert!(said.contains("shards 0-3 are in the queue: jobs 101, `gs-") && said.contains("-merge`"), "{said}");
+    assert!(said.contains("(`scancel 101; scancel --me --name=gs-") && !said.contains("without a merge"), "{said}");
 }
 
 /// The answer was lost, the job was not: another one would do the work twice.
@@ -159,6 +182,9 @@ fn a_scheduler_that_never_answers_is_given_up_with_the_way_on() {
     );
     // It failed after hours: what is in the queue is said.
     let (code, said) = site.run(&words, &[("HOLD", "1"), ("FAIL_squeue", "3 4 5 6")]);
-    assert!(code == Some(1) && said.contains("shards 0-3 are in the queue and go on (`scancel"), "{said}");
+    assert!(
+        code == Some(1) && said.contains("shards 0-3 are in the queue: job 101 goes on (`scancel 101` ends it)"),
+        "{said}"
+    );
     assert!(Path::new(&site.0.path("plan/plan.json")).exists());
 }
