@@ -58,6 +58,9 @@ pub(super) fn archive(
     if let Some(problem) = standing.problem() {
         return Err(usage(format!("{problem}; {}", first("run"))));
     }
+    if let Some(file) = standing.pointers.first() {
+        return Err(usage(format!("`{file}` {}", file::POINTER)));
+    }
     if let Some(file) = standing.absent().first() {
         return Err(usage(format!("`{file}` is not here; {}", first("run"))));
     }

@@ -14,6 +14,7 @@ use declare::error::Diagnostic;
 use declare::number::counted;
 use studygraph::runner::standing::{Condition, StageStanding, Standing, standing_of};
 use studygraph::store::cache::{Cache, Left, Lookup};
+use studygraph::store::file;
 use studygraph::store::index;
 use studygraph::store::results::{FileState, Folder, Known, is_drawn};
 use studygraph::study::{self, Settings, Study};
@@ -75,7 +76,7 @@ pub(super) fn status(
     let mut faults = Vec::new();
     let (mut all, mut values) = (Vec::new(), Vec::new());
     let (mut damaged, mut line_ends, mut lost, mut stale) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    let mut unreadable = Vec::new();
+    let (mut unreadable, mut pointers) = (Vec::new(), Vec::new());
     for file in &files {
         match told(file, &settings, places, cache.as_ref(), check) {
             Ok(told) => {
@@ -83,7 +84,7 @@ pub(super) fn status(
                 if as_json {
                     values.push(value(&told));
                 } else {
-                    out(&(text(&told) + &read_text(&told)));
+                    out(&(text(&told) + &pointers_text(&told.standing) + &read_text(&told)));
                 }
                 let folder = Folder::new(&places.results, &told.study.name);
                 let path = |name: &String| folder.path().join(name).display().to_string();
@@ -92,7 +93,10 @@ pub(super) fn status(
                     line_ends.extend(read.line_ends.iter().map(path));
                     unreadable.extend(read.unreadable.iter().map(path));
                 }
-                lost.extend(told.lost.iter().filter(|_| check).map(path));
+                let (of_lfs, not_here): (Vec<&String>, Vec<&String>) =
+                    told.lost.iter().filter(|_| check).partition(|name| told.standing.pointers.contains(name));
+                lost.extend(not_here.into_iter().map(path));
+                pointers.extend(of_lfs.into_iter().map(path));
                 if check && !is_up_to_date(&told.standing) {
                     stale.push(told.study.name.clone());
                 }
@@ -123,6 +127,9 @@ pub(super) fn status(
     if !line_ends.is_empty() {
         let again = "`gearstudy run` writes it anew, and `results/** -text` in .gitattributes keeps git from it";
         advice.push(format!("only its line ends differ (git's autocrlf); {again}:\n  {}", line_ends.join("\n  ")));
+    }
+    if !pointers.is_empty() {
+        advice.push(format!("pointers of Git LFS; `git lfs pull` fetches them:\n  {}", pointers.join("\n  ")));
     }
     if !lost.is_empty() {
         advice.push(format!("missing; `gearstudy run` writes it anew:\n  {}", lost.join("\n  ")));
@@ -250,6 +257,7 @@ fn value(told: &Told) -> Value {
         "results": standing.has_results, "tables_here": tables_here, "stages_not_in_cache": uncached,
         "text_changed": standing.text_changed, "gone": standing.gone, "report_up_to_date": report, "stages": stages,
         "foreign": standing.foreign, "other_run": standing.other_run, "not_here": standing.missing,
+        "lfs_pointers": standing.pointers,
     });
     if let Some(read) = read {
         value["damaged"] = json!(read.damaged);
@@ -257,6 +265,18 @@ fn value(told: &Told) -> Value {
         value["unreadable"] = json!(read.unreadable);
     }
     value
+}
+
+/// Files that git has elsewhere.
+fn pointers_text(standing: &Standing) -> String {
+    match &standing.pointers[..] {
+        [] => String::new(),
+        [one] => format!("  `{one}` {}\n", file::POINTER),
+        [first, others @ ..] => {
+            let more = others.len();
+            format!("  `{first}` and {more} more are pointers of Git LFS: `git lfs pull` fetches them\n")
+        }
+    }
 }
 
 /// What reading every file found.

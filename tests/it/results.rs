@@ -52,7 +52,7 @@ fn only_code_changed(standing: &Standing) -> bool {
     let by_code = |state: &Condition| match state {
         Condition::UpToDate | Condition::Waits(_) => true,
         Condition::Stale(why) => why == "code changed",
-        Condition::Missing(_) | Condition::Damaged(_) | Condition::OtherRun(_) => false,
+        Condition::Missing(_) | Condition::Damaged(_) | Condition::LineEnds(_) | Condition::OtherRun(_) => false,
     };
     let rest =
         standing.has_results && !standing.text_changed && standing.gone.is_empty() && standing.foreign.is_empty();

@@ -2,6 +2,7 @@
 
 mod bad;
 mod checkout;
+mod clones;
 mod completions;
 mod diff;
 mod disk;

@@ -13,7 +13,7 @@ use crate::store::cache::{Cache, Lookup};
 use crate::store::error::StoreError;
 use crate::store::file;
 use crate::store::index::{self, Index};
-use crate::store::manifest::{AGAIN, FileRecord, KeyRecord, Manifest, StageRecord, TableRecord};
+use crate::store::manifest::{FileRecord, KeyRecord, Manifest, StageRecord, TableRecord};
 use crate::store::parquet;
 use crate::store::results::{FileState, Folder, Known, MANIFEST, held_text, here};
 use crate::table::data::Table;
@@ -144,10 +144,7 @@ impl Side {
         let wrong = |problem: &str| format!("`{}` of {} {problem}", path.display(), self.label);
         let read = self.read(&path, file::MOST_MANIFEST).map_err(|problem| wrong(&problem))?;
         let Some(bytes) = read else { return Ok(None) };
-        if let Some(pointer) = pointer(&bytes) {
-            return Err(wrong(pointer));
-        }
-        Manifest::parse(&bytes).map(Some).map_err(|problem| wrong(&format!("is damaged: {problem}; {AGAIN}")))
+        Manifest::parse(&bytes).map(Some).map_err(|unread| wrong(&unread.to_string()))
     }
 
     /// A table of a study, checked against its manifest, and what is wrong with its file. Where the file is not kept or
@@ -184,8 +181,8 @@ impl Side {
             Ok(None) => return Held::Absent,
             Ok(Some(bytes)) => bytes,
         };
-        if let Some(pointer) = pointer(&bytes) {
-            return Held::Elsewhere(pointer.to_owned());
+        if file::is_pointer(&bytes) {
+            return Held::Elsewhere(file::POINTER.to_owned());
         }
         let place = format!("{study}/{}", record.file);
         let read = || parquet::read(bytes);
@@ -209,7 +206,7 @@ impl Side {
     /// The files of a table that are not the lines it holds.
     fn changed_files(&self, study: &str, record: &TableRecord, table: &Table) -> Vec<(String, String)> {
         let changed = |file: &String| match self.read(&Path::new(study).join(file), file::MOST_TABLE) {
-            Ok(Some(bytes)) if pointer(&bytes).is_none() => {
+            Ok(Some(bytes)) if !file::is_pointer(&bytes) => {
                 let text = held_text(table, file).filter(|text| text.as_bytes() != bytes)?;
                 let is_alike = index::differ_in_line_ends(&bytes, &index::digest(text.as_bytes()));
                 let other = || format!("is not what the table `{}` holds", record.name);
@@ -269,7 +266,7 @@ impl Side {
         let bytes = match self.read(&Path::new(study).join(&listed.file), file::MOST_TABLE) {
             Err(_) if matches!(self.source, Source::Commit(_)) => return None,
             Err(problem) => return Some(problem),
-            Ok(bytes) => bytes.filter(|bytes| pointer(bytes).is_none())?,
+            Ok(bytes) => bytes.filter(|bytes| !file::is_pointer(bytes))?,
         };
         let expected = known.and_then(|known| known.expected(&listed.file)).map(|(_, digest)| digest);
         let size = bytes.len() as u64;
@@ -284,13 +281,6 @@ impl Side {
             _ => None,
         }
     }
-}
-
-/// What a file of Git LFS looks like before its contents were fetched.
-fn pointer(bytes: &[u8]) -> Option<&'static str> {
-    bytes
-        .starts_with(b"version https://git-lfs.github.com/spec/")
-        .then_some("is a pointer of Git LFS: `git lfs pull` fetches it")
 }
 
 /// The table of a manifest in a folder, or from the cache where its file is not there or of another run.
@@ -312,6 +302,7 @@ pub fn published(
     let why = match known.map(|known| known.table_state(record)) {
         Some(FileState::OtherRun) => "is of another run",
         Some(FileState::Absent) => "is not here",
+        Some(FileState::Pointer) => file::POINTER,
         _ => return Err(problem.to_string()),
     };
     let cache = cache().map_err(|error| error.to_string())?;

@@ -31,6 +31,7 @@ impl From<StoreError> for Fault {
             StoreError::Format { .. } => Self::Bug(message),
             StoreError::Io { .. }
             | StoreError::Damaged { .. }
+            | StoreError::NotForHere { .. }
             | StoreError::OtherRun { .. }
             | StoreError::Stopped { .. }
             | StoreError::InUse { .. } => Self::Store(message),

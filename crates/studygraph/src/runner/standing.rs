@@ -11,6 +11,7 @@ use super::key::{self, KeyedChunk, explain, phrase};
 use super::options::Wanted;
 use crate::stage::Want;
 use crate::store::entry::StoredTable;
+use crate::store::index::LINE_ENDS;
 use crate::store::manifest::{KeyRecord, Manifest, StageRecord, TableRecord};
 use crate::store::results::{FileState, Folder, Known, PAGE, is_drawn};
 use crate::study::{self, Node, Study};
@@ -35,6 +36,8 @@ pub struct Standing {
     pub other_run: Vec<String>,
     /// Those that are not here.
     pub missing: Vec<String>,
+    /// Of all files that are not here, those in whose place a pointer of Git LFS is.
+    pub pointers: Vec<String>,
     /// Whether page and figures are those of the last run.
     pub report: bool,
 }
@@ -60,6 +63,8 @@ pub enum Condition {
     Missing(String),
     /// A file that is not as the manifest lists it.
     Damaged(String),
+    /// Files of which git changed the line ends and nothing else.
+    LineEnds(String),
     /// Files that another run wrote, under another manifest.
     OtherRun(String),
     /// Only a run of these stages can tell.
@@ -74,6 +79,7 @@ impl Condition {
             Self::Stale(_) => "stale",
             Self::Missing(_) => "missing",
             Self::Damaged(_) => "damaged",
+            Self::LineEnds(_) => "line ends",
             Self::OtherRun(_) => "other run",
             Self::Waits(_) => "waits",
         }
@@ -84,7 +90,9 @@ impl Condition {
     pub fn why(&self) -> String {
         match self {
             Self::UpToDate => String::new(),
-            Self::Stale(why) | Self::Missing(why) | Self::Damaged(why) | Self::OtherRun(why) => why.clone(),
+            Self::Stale(why) | Self::Missing(why) | Self::Damaged(why) | Self::LineEnds(why) | Self::OtherRun(why) => {
+                why.clone()
+            }
             Self::Waits(names) => format!("for {}", names.join(", ")),
         }
     }
@@ -212,6 +220,8 @@ pub fn standing_of(study: &Study, known: Option<&Known>) -> Result<Standing, Dia
         files.map(|(file, _)| (*file).to_owned()).collect()
     };
     let foreign = in_state(&[FileState::Changed, FileState::Unreadable]);
+    let files = known.iter().flat_map(|known| known.manifest.files.iter().map(move |record| (known, &record.file)));
+    let pointers = files.filter(|(known, file)| known.state(file) == FileState::Pointer);
     Ok(Standing {
         stages,
         has_results: manifest.is_some(),
@@ -220,7 +230,8 @@ pub fn standing_of(study: &Study, known: Option<&Known>) -> Result<Standing, Dia
         line_ends: foreign.iter().filter(is_alike).cloned().collect(),
         foreign,
         other_run: in_state(&[FileState::OtherRun]),
-        missing: in_state(&[FileState::Absent]),
+        missing: in_state(&[FileState::Absent, FileState::Pointer]),
+        pointers: pointers.map(|(_, file)| file.clone()).collect(),
         report: drawn().any(|(file, _)| *file == PAGE) && drawn().all(|(_, state)| *state == FileState::Intact),
     })
 }
@@ -270,6 +281,7 @@ fn stale(record: &StageRecord, kind: &str, now: &[&KeyRecord], axis: Option<&'st
 /// The files of a stage's tables that are not here, and the worst of those that are, but not as they were written.
 fn files(known: &Known, record: &StageRecord) -> (Vec<String>, Option<Condition>) {
     let (mut absent, mut odd, mut unread, mut other_run) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut line_ends = Vec::new();
     let of_table = |table: &TableRecord| {
         let held = table.files.iter().map(|file| (file.clone(), known.state(file)));
         [(table.file.clone(), known.table_state(table))].into_iter().chain(held).collect::<Vec<_>>()
@@ -277,17 +289,20 @@ fn files(known: &Known, record: &StageRecord) -> (Vec<String>, Option<Condition>
     for (file, state) in record.tables.iter().flat_map(of_table) {
         match state {
             FileState::Intact => {}
-            FileState::Absent => absent.push(file),
+            FileState::Absent | FileState::Pointer => absent.push(file),
             FileState::OtherRun => other_run.push(file),
             FileState::Unreadable => unread.push(file),
+            FileState::Changed if known.has_other_line_ends(&file) => line_ends.push(file),
             FileState::Changed | FileState::Unknown | FileState::Unlisted => odd.push(file),
         }
     }
     let damaged = named(&odd, "is not as the manifest lists it", "are not as the manifest lists them")
         .or_else(|| named(&unread, "cannot be read", "cannot be read"))
         .map(Condition::Damaged);
+    let several = "are as they were written; only their line ends differ (git's autocrlf)";
+    let line_ends = || named(&line_ends, LINE_ENDS, several).map(Condition::LineEnds);
     let other_run = || named(&other_run, "is of another run", "are of another run").map(Condition::OtherRun);
-    (absent, damaged.or_else(other_run))
+    (absent, damaged.or_else(line_ends).or_else(other_run))
 }
 
 /// The first of some files, the number of the others, and what is wrong with one or with several; nothing where there are

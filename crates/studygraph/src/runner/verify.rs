@@ -24,7 +24,7 @@ use crate::store::archive::{self, ArchiveError};
 use crate::store::bundle::Opened;
 use crate::store::cache::Cache;
 use crate::store::error::StoreError;
-use crate::store::manifest::{Manifest, TableRecord};
+use crate::store::manifest::{Manifest, TableRecord, Unread};
 use crate::store::parquet;
 use crate::store::results::{Draw, MANIFEST};
 use crate::study::{self, LoadError};
@@ -129,7 +129,10 @@ pub fn unpack<R: Read + Seek>(
     })?;
     let inside = archive::results(&study.name) + MANIFEST;
     let bytes = archive.bytes(&inside)?;
-    let manifest = Manifest::parse(&bytes).map_err(|problem| archive.damaged(&inside, &problem))?;
+    let manifest = Manifest::parse(&bytes).map_err(|unread| match unread {
+        Unread::Damaged(problem) => archive.damaged(&inside, &problem),
+        other => archive.refused(&inside, &other.to_string()),
+    })?;
     let digest = study::digest(&study.text);
     let problem = if manifest.study != study.name || manifest.study_digest != digest {
         Some(format!("it is not about the study `{name}` beside it"))

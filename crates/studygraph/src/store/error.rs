@@ -12,6 +12,9 @@ pub enum StoreError {
     /// Made by an earlier run, but not readable as such: callers compute it again.
     #[error("`{path}` is damaged: {problem}")]
     Damaged { path: String, problem: String },
+    /// Whole, but not to be read here nor replaced: of a newer version, or a pointer to what git has elsewhere.
+    #[error("`{path}` {problem}")]
+    NotForHere { path: String, problem: String },
     #[error(
         "not deterministic: table `{table}` came out different from the last time although nothing it depends on \
          changed"

@@ -65,6 +65,15 @@ pub struct Stamp {
 /// A phrase that follows the name of a text of which git changed the line ends when it checked it out.
 pub const LINE_ENDS: &str = "is as it was written; only its line ends differ (git's autocrlf)";
 
+/// The digest of a manifest as it was written, whatever line ends git gave it: JSON has no other carriage returns.
+#[must_use]
+pub fn manifest_digest(bytes: &[u8]) -> String {
+    match std::str::from_utf8(bytes) {
+        Ok(text) if text.contains("\r\n") => digest(text.replace("\r\n", "\n").as_bytes()),
+        _ => digest(bytes),
+    }
+}
+
 /// Whether bytes have a digest once their line ends are others, as `core.autocrlf` of git makes them.
 #[must_use]
 pub fn differ_in_line_ends(bytes: &[u8], expected: &str) -> bool {

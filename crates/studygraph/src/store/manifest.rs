@@ -6,6 +6,7 @@ mod config;
 mod cut;
 mod lines;
 mod shown;
+mod unread;
 mod wire;
 
 use std::borrow::Cow;
@@ -18,6 +19,7 @@ use serde::{Deserialize, Serialize};
 pub use config::Config;
 pub use cut::Cut;
 pub use shown::{More, places as shown_places};
+pub use unread::{Unread, check_version};
 
 use super::entry::{StoredColumn, StoredTable};
 pub use super::key_record::{KeyRecord, Short};
@@ -307,18 +309,22 @@ impl Manifest {
     /// The manifest that a file holds.
     ///
     /// # Errors
-    /// A phrase: that the bytes are no manifest, or one of another format.
-    pub fn parse(bytes: &[u8]) -> Result<Self, String> {
-        let manifest: Self = serde_json::from_slice(bytes).map_err(|error| {
-            let conflict = std::str::from_utf8(bytes).ok().and_then(merge_conflict);
-            let conflict =
-                conflict.map(|(first, last)| format!("it holds a merge conflict in lines {first} to {last}"));
-            conflict.unwrap_or_else(|| error.to_string())
-        })?;
-        if (1..=FORMAT).contains(&manifest.format) {
-            return Ok(manifest);
+    /// That the bytes are no manifest, or one of another format.
+    pub fn parse(bytes: &[u8]) -> Result<Self, Unread> {
+        let parsed: Result<Self, _> = serde_json::from_slice(bytes);
+        let is_known = |manifest: &Self| (1..=FORMAT).contains(&manifest.format);
+        if parsed.as_ref().is_ok_and(is_known) {
+            return parsed.map_err(|error| Unread::Damaged(error.to_string()));
         }
-        Err(format!("it has format {}, and this version reads formats 1 to {FORMAT}", manifest.format))
+        check_version(bytes)?;
+        let problem = match parsed {
+            Ok(manifest) => format!("it has format {}, and this version reads formats 1 to {FORMAT}", manifest.format),
+            Err(error) => match std::str::from_utf8(bytes).ok().and_then(merge_conflict) {
+                Some((first, last)) => format!("it holds a merge conflict in lines {first} to {last}"),
+                None => error.to_string(),
+            },
+        };
+        Err(Unread::Damaged(problem))
     }
 }
 

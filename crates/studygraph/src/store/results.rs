@@ -31,7 +31,7 @@ use super::bundle::{Opened, is_bundle};
 use super::error::StoreError;
 use super::file;
 use super::lock::{self, Lock, Told};
-use super::manifest::{AGAIN, Manifest, StudyFolder, TableRecord};
+use super::manifest::{AGAIN, FORMAT, Manifest, StudyFolder, TableRecord, Unread, check_version};
 use super::parquet;
 use crate::presence;
 use crate::table::data::{Data, Table};
@@ -94,11 +94,13 @@ impl Folder {
     /// does not, or is damaged.
     ///
     /// # Errors
-    /// When the manifest cannot be read.
+    /// When the manifest cannot be read, or is one that a run must not replace.
     pub fn study_file(&self) -> Result<Option<(PathBuf, String)>, StoreError> {
         /// All else in the manifest is passed over.
         #[derive(serde::Deserialize)]
         struct Recorded {
+            #[serde(default)]
+            format: u32,
             #[serde(default)]
             study_folder: StudyFolder,
         }
@@ -107,7 +109,11 @@ impl Folder {
             Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::InvalidData) => return Ok(None),
             other => other.map_err(StoreError::io("read", &path))?,
         };
-        let Ok(Recorded { study_folder }) = serde_json::from_slice(&bytes) else { return Ok(None) };
+        let recorded: Option<Recorded> = serde_json::from_slice(&bytes).ok();
+        if recorded.as_ref().is_none_or(|recorded| recorded.format > FORMAT) {
+            check_version(&bytes).map_err(|unread| unread_manifest(&path, unread))?;
+        }
+        let Some(Recorded { study_folder, .. }) = recorded else { return Ok(None) };
         let Some(file) = study_folder.file else { return Ok(None) };
         let folder = std::path::absolute(&self.path).map_err(StoreError::io("find", &self.path))?;
         let name = study_folder.name.unwrap_or_else(|| self.study.clone());
@@ -136,8 +142,7 @@ impl Folder {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             other => other.map_err(StoreError::io("read", &path))?,
         };
-        let damaged = |problem: String| StoreError::Damaged { path: path.display().to_string(), problem };
-        let manifest = Manifest::parse(&bytes).map_err(|problem| damaged(format!("{problem}; {AGAIN}")))?;
+        let manifest = Manifest::parse(&bytes).map_err(|unread| unread_manifest(&path, unread))?;
         Ok(Some((manifest, bytes)))
     }
 
@@ -179,6 +184,9 @@ impl Folder {
     pub fn whole(&self, file: &str) -> Result<Table, StoreError> {
         let path = self.path.join(file);
         let bytes = file::read(&path, file::MOST_TABLE).map_err(StoreError::io("read", &path))?;
+        if file::is_pointer(&bytes) {
+            return Err(StoreError::NotForHere { path: path.display().to_string(), problem: file::POINTER.to_owned() });
+        }
         parquet::read(bytes).map_err(|problem| self.damaged(file, &problem))
     }
 
@@ -215,6 +223,18 @@ impl Folder {
         // Somebody else may have published until now.
         self.opened.clear();
         Ok(lock)
+    }
+}
+
+fn unread_manifest(path: &Path, unread: Unread) -> StoreError {
+    let path = path.display().to_string();
+    match unread {
+        Unread::Damaged(problem) => StoreError::Damaged { path, problem: format!("{problem}; {AGAIN}") },
+        Unread::Newer(_) => {
+            let remedy = "or delete the file, and `gearstudy run STUDY` writes all results anew";
+            StoreError::NotForHere { path, problem: format!("{unread}, {remedy}") }
+        }
+        Unread::Pointer => StoreError::NotForHere { path, problem: unread.to_string() },
     }
 }
 

@@ -54,7 +54,7 @@ pub fn check<R: Read + Seek>(
     }
     let index = archive.names().any(|name| name == format!("{inside}{INDEX}"));
     let index = if index { Index::parse(&archive.bytes(&format!("{inside}{INDEX}"))?) } else { None };
-    let digest = index::digest(&archive.bytes(&format!("{inside}{MANIFEST}"))?);
+    let digest = index::manifest_digest(&archive.bytes(&format!("{inside}{MANIFEST}"))?);
     let index = index.filter(|index| index.manifest == digest).unwrap_or_default();
     for record in &manifest.files {
         let noted = index.find(&record.file).filter(|_| record.varies).map(|seen| &seen.digest);

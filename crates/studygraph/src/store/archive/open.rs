@@ -40,8 +40,6 @@ pub struct Archive<R> {
     files: Files<R>,
     /// Files of the crate by name; folders are left out.
     entries: BTreeMap<String, usize>,
-    /// Files beside the folder that the crate is in.
-    outside: Vec<String>,
 }
 
 /// Where the bytes of entries are.
@@ -143,7 +141,6 @@ impl<R: Read + Seek> Archive<R> {
     /// The crate among files that were checked.
     fn of_entries(path: String, files: Files<R>, mut entries: BTreeMap<String, usize>) -> Result<Self, ArchiveError> {
         entries.retain(|name, _| !is_of_a_system(name));
-        let mut outside = Vec::new();
         let folders =
             entries.keys().filter_map(|name| name.strip_suffix(METADATA).filter(|folder| folder.ends_with('/')));
         let mut folders: Vec<String> = folders.map(str::to_owned).collect();
@@ -161,12 +158,11 @@ impl<R: Read + Seek> Archive<R> {
             return Err(ArchiveError::NoArchive { path, problem });
         }
         if let Some(folder) = folders.pop() {
-            let (inside, beside): (Vec<_>, Vec<_>) =
-                entries.into_iter().partition(|(name, _)| name.starts_with(&folder));
-            outside = beside.into_iter().map(|(name, _)| name).collect();
-            entries = inside.into_iter().map(|(name, index)| (name[folder.len()..].to_owned(), index)).collect();
+            // Files beside it, as a note on how to use it, are none of the crate's.
+            let inside = |(name, index): (String, usize)| Some((name.strip_prefix(&folder)?.to_owned(), index));
+            entries = entries.into_iter().filter_map(inside).collect();
         }
-        let mut archive = Self { path, files, entries, outside };
+        let mut archive = Self { path, files, entries };
         archive.described()?;
         Ok(archive)
     }
@@ -254,6 +250,11 @@ impl<R: Read + Seek> Archive<R> {
         ArchiveError::Damaged { path: self.path.clone(), problem: format!("`{name}`: {problem}") }
     }
 
+    /// For `map_err`: why an entry, though whole, is not read.
+    pub fn refused(&self, name: &str, problem: &str) -> ArchiveError {
+        ArchiveError::Refused { path: self.path.clone(), problem: format!("`{name}` {problem}") }
+    }
+
     /// The study's file, by the description.
     ///
     /// # Errors
@@ -308,7 +309,7 @@ impl<R: Read + Seek> Archive<R> {
         let listed: BTreeMap<&str, Option<&str>> =
             files.filter_map(|entity| Some((entity["@id"].as_str()?, entity["sha256"].as_str()))).collect();
         let names: Vec<String> = self.entries.keys().filter(|name| *name != METADATA).cloned().collect();
-        let mut wrong: Vec<String> = self.outside.iter().map(|name| format!("`{name}` was added")).collect();
+        let mut wrong = Vec::new();
         for name in &names {
             match listed.get(name.as_str()) {
                 None if is_preview(name) => {}

@@ -126,11 +126,16 @@ fn crates_are_read_unpacked_and_in_a_folder_and_beside_files_of_systems() {
         archive.intact().unwrap();
         assert_eq!((archive.described().unwrap(), archive.bytes(TABLE).unwrap()), (STUDY.to_owned(), vec![7; 300]));
     }
-    // Files beside the crate are added ones, as those inside are.
-    fs::write(folder.path().join("more"), "").unwrap();
+    // Files beside the folder of the crate are none of it; inside they were added.
+    fs::write(folder.path().join("README.txt"), "").unwrap();
+    fs::write(folder.path().join("up/README.md"), "").unwrap();
+    open(folder.path()).unwrap().intact().unwrap();
+    let mut beside = inside.clone();
+    beside.extend([("README.txt".to_owned(), b"x".to_vec()), ("up/README.md".to_owned(), b"x".to_vec())]);
+    check(&pack(&beside).unwrap()).unwrap().intact().unwrap();
     fs::write(own.join("more"), "").unwrap();
     let said = open(folder.path()).unwrap().intact().unwrap_err().to_string();
-    assert!(said.contains("`more` was added, `more` was added"), "{said}");
+    assert!(said.ends_with("says: `more` was added"), "{said}");
     fs::remove_file(own.join(TABLE)).unwrap();
     #[cfg(unix)]
     {

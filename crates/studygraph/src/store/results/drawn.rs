@@ -77,7 +77,9 @@ impl Folder {
         let missed = RefCell::new(None);
         let elsewhere = |record: &TableRecord| {
             let state = old.table_state(record);
-            let found = matches!(state, FileState::Absent | FileState::OtherRun).then(|| elsewhere(record)).flatten();
+            let found = matches!(state, FileState::Absent | FileState::Pointer | FileState::OtherRun)
+                .then(|| elsewhere(record))
+                .flatten();
             if found.is_none() && state == FileState::OtherRun {
                 missed.borrow_mut().get_or_insert_with(|| of_other_run(&record.file));
             }

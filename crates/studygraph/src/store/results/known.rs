@@ -26,6 +26,8 @@ pub enum FileState {
     /// Whole, but a file of another run: git exchanges the manifest on a checkout and leaves files that it does not keep,
     /// and the index describes them as they were written.
     OtherRun,
+    /// A pointer of Git LFS is in its place.
+    Pointer,
     /// The system does not let it be read.
     Unreadable,
     /// There, and listed, but nobody knows its digest: the manifest is of an earlier version, or the index is lost.
@@ -38,7 +40,7 @@ pub enum FileState {
 pub struct Known {
     pub manifest: Manifest,
     folder: Folder,
-    /// Of the manifest's bytes.
+    /// Of the manifest as it was written.
     pub(super) digest: String,
     index: Index,
     /// Places in the manifest's list of files, and in the index.
@@ -61,7 +63,7 @@ pub struct Known {
 impl Known {
     pub(super) fn new(folder: Folder, manifest: Manifest, bytes: &[u8]) -> Self {
         let index = Index::read(folder.path()).unwrap_or_default();
-        Self::with(folder, manifest, index, index::digest(bytes))
+        Self::with(folder, manifest, index, index::manifest_digest(bytes))
     }
 
     /// Where the manifest is known to be the one that the index was written for.
@@ -102,7 +104,7 @@ impl Known {
     /// The manifest's text, where that is still what was read.
     pub(super) fn text(&self) -> Option<Vec<u8>> {
         let text = file::read(&self.folder.path().join(MANIFEST), file::MOST_MANIFEST).ok()?;
-        (index::digest(&text) == self.digest).then_some(text)
+        (index::manifest_digest(&text) == self.digest).then_some(text)
     }
 
     /// The stages of the manifest, which are no longer known here.
@@ -155,7 +157,10 @@ impl Known {
         if let Some(state) = held(&self.states).get(file) {
             return *state;
         }
-        let state = self.look(file);
+        let state = match self.look(file) {
+            FileState::Changed | FileState::Unknown if self.is_pointer(file) => FileState::Pointer,
+            state => state,
+        };
         held(&self.states).insert(file.to_owned(), state);
         state
     }
@@ -196,6 +201,12 @@ impl Known {
         } else {
             FileState::Changed
         }
+    }
+
+    fn is_pointer(&self, file: &str) -> bool {
+        // What is longer, or cannot be read, is no pointer.
+        let bytes = file::read(&self.folder.path().join(file), file::MOST_POINTER);
+        bytes.is_ok_and(|bytes| file::is_pointer(&bytes))
     }
 
     /// The same for a table: where no digest is known, its values tell.

@@ -160,6 +160,7 @@ impl Folder {
             Err(StoreError::Io { action, path, source }) if source.kind() != ErrorKind::InvalidData => {
                 return Err(StoreError::Io { action, path, source });
             }
+            Err(kept @ StoreError::NotForHere { .. }) => return Err(kept),
             known => known.ok().flatten().map(|mut known| {
                 known.manifest.share(&manifest);
                 known
