@@ -28,6 +28,14 @@ pub(super) struct Scratch {
     _lock: Option<File>,
 }
 
+impl Drop for Scratch {
+    /// The content goes before the mark: a run that is killed meanwhile leaves a folder that the next one still knows.
+    fn drop(&mut self) {
+        // The folder is removed after it, with what is left.
+        let _ = fs::remove_dir_all(&self.content);
+    }
+}
+
 impl Scratch {
     /// # Errors
     /// When there is no place for one.
@@ -89,8 +97,12 @@ fn sweep(root: &Path, own: &Path) {
             && let Ok(_lock) = locked(&path)
         {
             let is_ours = fs::read(path.join(MARK)).is_ok_and(|text| text == MARKED.as_bytes());
-            // One without the mark was left before it had any content, or is not of a run.
-            let _ = if is_ours { fs::remove_dir_all(&path) } else { fs::remove_dir(&path) };
+            if is_ours {
+                let _ = fs::remove_dir_all(path.join(CONTENT));
+                let _ = fs::remove_file(path.join(MARK));
+            }
+            // An empty one without the mark was left before it had any content; others are not of a run.
+            let _ = fs::remove_dir(&path);
         }
     }
 }
@@ -116,7 +128,7 @@ mod tests {
     fn folders_of_killed_runs_are_removed_and_those_of_others_stay() {
         let root = tempfile::tempdir().unwrap();
         let living = made(root.path()).unwrap();
-        fs::create_dir_all(root.path().join("gearstudy-left/below")).unwrap();
+        fs::create_dir_all(root.path().join("gearstudy-left/content/below")).unwrap();
         fs::write(root.path().join("gearstudy-left").join(MARK), MARKED).unwrap();
         fs::create_dir(root.path().join("gearstudy-empty")).unwrap();
         for others in ["gearstudy-main", "gearstudy-0.1.0"] {

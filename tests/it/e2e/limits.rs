@@ -260,7 +260,6 @@ fn what_a_killed_command_left_is_removed_by_the_next() {
         }
         child.kill().unwrap();
         kills += usize::from(child.wait().unwrap().code().is_none());
-        assert!(count() <= 1, "{}", count());
     }
     assert!(kills > 0);
     let output = desk.command(&["verify", "a.zip", "--quiet"]).env("TMPDIR", temporary.path()).output().unwrap();

@@ -37,11 +37,11 @@ fn sound(desk: &Desk) -> Vec<usize> {
 fn killed_pieces_leave_nothing_that_is_taken_for_a_pack() {
     let desk = planned();
     let mut finished: Vec<usize> = Vec::new();
-    for round in 0..5_u64 {
+    for round in 0..3_u64 {
         for index in 0..SHARDS {
             let mut children = [start(&desk, index), start(&desk, index)];
             // From before anything happened to after the end, which takes some hundred milliseconds.
-            std::thread::sleep(Duration::from_millis((round * 70 + index as u64 * 11) % 500));
+            std::thread::sleep(Duration::from_millis((round * 120 + index as u64 * 11) % 500));
             for child in &mut children {
                 child.kill().unwrap();
                 child.wait().unwrap();

@@ -17,9 +17,9 @@ use studygraph::store::cache::{Cache, Lookup};
 use studygraph::store::file::TEMPORARY;
 use studygraph::store::results::Folder;
 
-/// 45,000 rows in some parts, each with a file of its own.
+/// 30,000 rows in some parts, each with a file of its own.
 fn text() -> String {
-    grid("from: 1 um, to: 30 um, count: 30", TORQUES).replace("study: t\n", "study: tiny\n")
+    grid("from: 1 um, to: 30 um, count: 20", TORQUES).replace("study: t\n", "study: tiny\n")
 }
 
 /// The keys of the parts, from the manifest of an undisturbed run.
@@ -57,7 +57,7 @@ fn start(place: &Place, text: &str) -> std::process::Child {
 
 #[test]
 fn a_sweep_that_is_killed_at_any_moment_is_gone_on_with() {
-    let moments = std::env::var("GEARSTUDY_SWEEP_KILLS").map_or(6, |moments| moments.parse().unwrap());
+    let moments = std::env::var("GEARSTUDY_SWEEP_KILLS").map_or(4, |moments| moments.parse().unwrap());
     let text = text();
     let home = disk::folder();
     let undisturbed = Place::new(home.path());
@@ -113,7 +113,7 @@ fn a_sweep_that_is_killed_at_any_moment_is_gone_on_with() {
         assert_eq!((partial(&cache), sound(&cache, &keys).len()), (0, keys.len()));
     }
     // Past the capture of a test that passes, where many were asked for.
-    if moments > 6 {
+    if moments > 4 {
         eprintln!("{done} moments, {killed} kills, {kept} parts there when it was gone on with");
     }
     // A run that is done before its moment was not killed: on a machine that others leave meanwhile most may be.
@@ -121,7 +121,7 @@ fn a_sweep_that_is_killed_at_any_moment_is_gone_on_with() {
 }
 
 /// The disk is full, broken, or takes half of what it is given, at moments all over a run. What the run says and leaves is
-/// sound, and the next one ends as an undisturbed one.
+/// sound, and the next one ends as an undisturbed one. That errors are reported, `reliability::faults` holds.
 #[test]
 fn a_disk_that_fails_under_a_sweep_costs_time_alone() {
     if disk::library().is_none() {
@@ -136,15 +136,13 @@ fn a_disk_that_fails_under_a_sweep_costs_time_alone() {
     let operations = fs::read_to_string(&counted).unwrap();
     let operations: usize = operations.split_whitespace().next().unwrap().parse().unwrap();
     let (keys, wanted) = (keys(&undisturbed), published(&undisturbed.results()));
-    let mut refused = 0;
     for (turn, error) in [disk::ENOSPC, disk::EIO, disk::SHORT].into_iter().enumerate() {
-        for step in 0..4 {
-            let at = 1 + (operations * (2 * step + 1) + turn * operations / 3) / 9;
+        for step in 0..3 {
+            let at = 1 + (operations * (2 * step + 1) + turn * operations / 3) / 7;
             let home = disk::folder();
             let place = Place::new(home.path());
             let orders = [("SHIM_AT", at.to_string()), ("SHIM_ERROR", error.to_string())];
             let ended = place.run(&text, &orders);
-            refused += usize::from(!ended.status.success() || !ended.error.is_empty());
             let there = if place.disk.join("cache").exists() {
                 sound(&place.disk.join("cache"), &keys)
             } else {
@@ -156,7 +154,6 @@ fn a_disk_that_fails_under_a_sweep_costs_time_alone() {
             assert_eq!(partial(&place.results()), 0, "{case}");
         }
     }
-    assert!(refused > 2, "{refused}");
 }
 
 /// One cache and one folder for all of them.
