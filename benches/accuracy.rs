@@ -9,10 +9,9 @@ use gearmesh::gear::compliance::energy::Beam;
 use gearmesh::gear::compliance::sainsot::Body;
 use gearmesh::gear::geometry::root::RootShape;
 use gearmesh::gear::geometry::{GearPair, Side};
+use gearmesh::gear::mesh::answers::curve::Wanted;
+use gearmesh::gear::mesh::{Loaded, Mesh, Settings};
 use gearmesh::gear::modification::Design;
-use gearmesh::gear::transmission_error::curve::Wanted;
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::numeric::chebyshev::Series;
 
 pub fn print() {
@@ -45,10 +44,10 @@ pub fn relative(value: f64, reference: f64) -> f64 {
 }
 
 /// The positions that were asked for, against as many equal steps that know nothing of zones, reliefs or first touches.
-fn positions(cycle: &MeshCycle, design: &Design) {
+fn positions(cycle: &Mesh, design: &Design) {
     let sampled = |positions| cycle.sampled(Settings { positions, ..cycle.settings });
     let converged = sampled(4096);
-    let reference = LoadCase::new(&converged, design, TORQUE).summary(Wanted::default());
+    let reference = converged.loaded(design, TORQUE).summary(Wanted::default());
     println!(
         "\nPositions: relative error of peak-to-peak and variance, and time per curve (4096 positions: no error)\n"
     );
@@ -67,7 +66,7 @@ fn positions(cycle: &MeshCycle, design: &Design) {
     );
     for positions in [8, 16, 32, 64, 128, 256, 512] {
         let cycle = sampled(positions);
-        let loading = || LoadCase::new(&cycle, design, TORQUE);
+        let loading = || cycle.loaded(design, TORQUE);
         let (points, summary) = loading().curve_and_summary(Wanted::default());
         let lean = seconds(|| loading().peak_to_peak());
         let curve = seconds(|| loading().curve(Wanted::default()));
@@ -90,7 +89,7 @@ fn positions(cycle: &MeshCycle, design: &Design) {
 }
 
 /// Peak-to-peak and variance from positions in equal steps.
-fn equal_steps(loading: &LoadCase, positions: usize) -> (f64, f64) {
+fn equal_steps(loading: &Loaded, positions: usize) -> (f64, f64) {
     let cycle = loading.cycle;
     let (mut largest, mut smallest) = (f64::NEG_INFINITY, f64::INFINITY);
     let (mut sum, mut squares) = (0.0, 0.0);
@@ -141,22 +140,22 @@ fn nodes(pair: &GearPair) {
 }
 
 /// Slices under the load-dependent contact law, which has no closed form across a crowned face.
-fn slices(cycle: &MeshCycle, design: &Design) {
+fn slices(cycle: &Mesh, design: &Design) {
     println!(
         "\nSlices: relative error of the peak-to-peak under load-dependent contact, and time (1025 slices: no error)\n"
     );
     println!("{:>9} | {:>12} {:>12}", "slices", "peak-to-peak", "lean µs");
     let sampled = |slices| cycle.sampled(Settings { slices, ..cycle.settings });
-    let reference = LoadCase::new(&sampled(1025), design, TORQUE).peak_to_peak();
+    let reference = sampled(1025).loaded(design, TORQUE).peak_to_peak();
     for slices in [3, 5, 9, 17, 33, 65, 129] {
         let cycle = sampled(slices);
-        let found = || LoadCase::new(&cycle, design, TORQUE).peak_to_peak();
+        let found = || cycle.loaded(design, TORQUE).peak_to_peak();
         println!("{slices:>9} | {:>12.1e} {:>12.1}", relative(found(), reference), seconds(found) * 1e6);
     }
 }
 
 /// Torques, and with them designs, on one thread: every curve for itself, whatever is kept between them.
-fn growth(cycle: &MeshCycle, design: &Design) {
+fn growth(cycle: &Mesh, design: &Design) {
     println!("\nGrowth: torques from 25 to 100 N m, curve, summary and 8 harmonics each, one thread\n");
     println!("{:>9} | {:>12} {:>12}", "torques", "ms", "µs each");
     let wanted = Wanted { harmonics: 8, pressure: false, ..Wanted::default() };
@@ -164,7 +163,7 @@ fn growth(cycle: &MeshCycle, design: &Design) {
         let time = seconds(|| {
             for index in 0..torques {
                 let torque = 25.0 + 75.0 * f64::from(index) / f64::from(torques);
-                black_box(LoadCase::new(cycle, design, torque).curve_and_summary(wanted));
+                black_box(cycle.loaded(design, torque).curve_and_summary(wanted));
             }
         });
         println!("{torques:>9} | {:>12.3} {:>12.1}", time * 1e3, time * 1e6 / f64::from(torques));

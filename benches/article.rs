@@ -10,8 +10,8 @@ use gearmesh::gear::compliance::energy::Energy;
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method, PairCompliance};
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::geometry::root::RootShape;
+use gearmesh::gear::mesh::{Mesh, Settings};
 use gearmesh::gear::modification::{self, Design};
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearstudy::program;
 use gearstudy::stage::{Context, Demand, Inputs, designs, pair};
 use studygraph::study::{Node, Study};
@@ -128,11 +128,11 @@ pub fn compliance(pair: &GearPair, assumptions: Assumptions) -> PairCompliance {
 }
 
 /// 64 positions, 33 slices.
-pub fn cycle(pair: &GearPair, contact: ContactLaw, coupled: bool) -> MeshCycle {
+pub fn cycle(pair: &GearPair, contact: ContactLaw, coupled: bool) -> Mesh {
     cycle_of(pair, contact, coupled, Settings::default())
 }
 
-pub fn cycle_of(pair: &GearPair, contact: ContactLaw, coupled: bool, settings: Settings) -> MeshCycle {
+pub fn cycle_of(pair: &GearPair, contact: ContactLaw, coupled: bool, settings: Settings) -> Mesh {
     let compliance = compliance(pair, assumptions(contact, coupled));
-    MeshCycle::new(pair, &compliance, settings).expect("its contact ratio is 1.65")
+    Mesh::new(pair, &compliance, settings).expect("its contact ratio is 1.65")
 }

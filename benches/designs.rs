@@ -111,7 +111,7 @@ pub fn print_optimizer() {
     let points = tried();
     let built = || points.iter().map(|point| design(point, &pair).expect("the box has none that is refused"));
     let designs: Vec<Design> = built().collect();
-    let error = |design: &Design| LoadCase::new(&cycle, design, 100.0).peak_to_peak();
+    let error = |design: &Design| cycle.loaded(design, 100.0).peak_to_peak();
     // In turns, since a machine that others share changes its pace within seconds.
     let mut taken = [f64::INFINITY; 4];
     for _ in 0..ROUNDS {

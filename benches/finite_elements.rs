@@ -16,15 +16,14 @@ use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method, Tabulated};
 use gearmesh::gear::contact::CornerContact;
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::geometry::root::RootShape;
+use gearmesh::gear::mesh::answers::curve::Wanted;
+use gearmesh::gear::mesh::{Loaded, Mesh, Settings};
 use gearmesh::gear::modification::arc::ArcRelief;
 use gearmesh::gear::modification::curve::Curve;
 use gearmesh::gear::modification::relief::{Amount, FromTip, Start};
 use gearmesh::gear::modification::tip_curve::{FlankPoint, Formulas, Through, TipPoint};
 use gearmesh::gear::modification::tip_relief::TipRelief;
 use gearmesh::gear::modification::{Design, Gears};
-use gearmesh::gear::transmission_error::curve::Wanted;
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::load_case::LoadCase;
 
 criterion_group!(name = benches; config = brief().sample_size(10); targets = finite_elements);
 
@@ -101,13 +100,13 @@ fn curves(group: &mut BenchmarkGroup<WallTime>) {
         {
             compliance.coupled = coupled;
             let settings = Settings { corner_contact, ..Settings::default() };
-            let cycle = MeshCycle::new(&pair, &compliance, settings).expect("its contact ratio is 1.65");
+            let cycle = Mesh::new(&pair, &compliance, settings).expect("its contact ratio is 1.65");
             group.bench_function(format!("curve, {law}, {what}"), |bencher| {
-                bencher.iter(|| LoadCase::new(black_box(&cycle), &design, TORQUE).curve(Wanted::default()));
+                bencher.iter(|| black_box(&cycle).loaded(&design, TORQUE).curve(Wanted::default()));
             });
         }
         group.bench_function(format!("cycle, {law}"), |bencher| {
-            bencher.iter(|| MeshCycle::new(black_box(&pair), &compliance, Settings::default()));
+            bencher.iter(|| Mesh::new(black_box(&pair), &compliance, Settings::default()));
         });
     }
 }
@@ -162,9 +161,8 @@ impl Growth {
 fn sweeps() {
     let pair = Stages::of("mei2016").pair();
     let compliance = tabulate(&pair, 16, Some(0.002)).compliance;
-    let base =
-        MeshCycle::new(&pair, &compliance, Settings { corner_contact: CornerContact::Exact, ..Settings::default() })
-            .expect("its contact ratio is 1.68");
+    let base = Mesh::new(&pair, &compliance, Settings { corner_contact: CornerContact::Exact, ..Settings::default() })
+        .expect("its contact ratio is 1.68");
     let design = |index: u32| {
         let mut design = Design::default();
         let level = |place: u32| f64::from(index / 5_u32.pow(place) % 5);
@@ -179,7 +177,7 @@ fn sweeps() {
     // Designs of all kinds among the first ones, too: a deep relief takes longer than a shallow one.
     let variances = |positions: usize, designs: u32| {
         let cycle = base.sampled(Settings { positions, ..base.settings });
-        (0..designs).map(|index| LoadCase::new(&cycle, &design(index * 401 % 625), 420.0).variance()).sum::<f64>()
+        (0..designs).map(|index| cycle.loaded(&design(index * 401 % 625), 420.0).variance()).sum::<f64>()
     };
     println!("\nGrowth: variance of arcs of mei2016, coupled, corner contact, one thread; 25 designs\n");
     println!("{:>9} {:>9} {:>12} {:>9}", "positions", "ms", "µs a design", "exponent");

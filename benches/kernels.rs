@@ -9,9 +9,8 @@ use crate::brief;
 use gearmesh::gear::compliance::ContactLaw::{Linear, LoadDependent};
 use gearmesh::gear::contact::SliceCoupling;
 use gearmesh::gear::geometry::GearPair;
-use gearmesh::gear::transmission_error::curve::Wanted;
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::load_case::LoadCase;
+use gearmesh::gear::mesh::answers::curve::Wanted;
+use gearmesh::gear::mesh::{Loaded, Mesh, Settings};
 
 criterion_group!(name = benches; config = brief(); targets = tables, curves, slices, stages);
 
@@ -30,7 +29,7 @@ fn tables(criterion: &mut Criterion) {
         });
         let compliance = compliance(&pair, assumptions);
         group.bench_function(format!("cycle {name}"), |bencher| {
-            bencher.iter(|| MeshCycle::new(black_box(&pair), &compliance, Settings::default()));
+            bencher.iter(|| Mesh::new(black_box(&pair), &compliance, Settings::default()));
         });
     }
 }
@@ -46,13 +45,13 @@ fn curves(criterion: &mut Criterion) {
         let cycle = cycle(&pair, contact, coupled);
         let wanted = Wanted { harmonics: 8, pressure: false, ..Wanted::default() };
         group.bench_function(format!("curve {name}"), |bencher| {
-            bencher.iter(|| LoadCase::new(black_box(&cycle), &design, TORQUE).curve(Wanted::default()));
+            bencher.iter(|| black_box(&cycle).loaded(&design, TORQUE).curve(Wanted::default()));
         });
         group.bench_function(format!("curve and summary {name}"), |bencher| {
-            bencher.iter(|| LoadCase::new(black_box(&cycle), &design, TORQUE).curve_and_summary(wanted));
+            bencher.iter(|| black_box(&cycle).loaded(&design, TORQUE).curve_and_summary(wanted));
         });
         group.bench_function(format!("peak-to-peak {name}"), |bencher| {
-            bencher.iter(|| LoadCase::new(black_box(&cycle), &design, TORQUE).peak_to_peak());
+            bencher.iter(|| black_box(&cycle).loaded(&design, TORQUE).peak_to_peak());
         });
     }
 }
@@ -66,9 +65,9 @@ fn slices(criterion: &mut Criterion) {
         let compliance = compliance(&pair, assumptions(contact, true));
         for slices in [11, 41] {
             let settings = Settings { slices, slice_coupling: SliceCoupling::Plate, ..Settings::default() };
-            let cycle = MeshCycle::new(&pair, &compliance, settings).expect("the pair has teeth");
+            let cycle = Mesh::new(&pair, &compliance, settings).expect("the pair has teeth");
             group.bench_function(format!("curve {contact:?} {slices} coupled slices"), |bencher| {
-                bencher.iter(|| LoadCase::new(black_box(&cycle), &design, TORQUE).curve(Wanted::default()));
+                bencher.iter(|| black_box(&cycle).loaded(&design, TORQUE).curve(Wanted::default()));
             });
         }
     }

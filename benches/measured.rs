@@ -9,15 +9,14 @@ use crate::brief;
 use gearmesh::gear::compliance::ContactLaw::Linear;
 use gearmesh::gear::contact::CornerContact;
 use gearmesh::gear::geometry::{GearPair, Side};
+use gearmesh::gear::mesh::answers::curve::Wanted;
+use gearmesh::gear::mesh::{Loaded, Settings};
 use gearmesh::gear::modification::curve::Curve;
 use gearmesh::gear::modification::flank::Flank;
 use gearmesh::gear::modification::measured::Measured;
 use gearmesh::gear::modification::relief::{Amount, FromTip, Start};
 use gearmesh::gear::modification::tip_relief::TipRelief;
 use gearmesh::gear::modification::{Design, Gears};
-use gearmesh::gear::transmission_error::curve::Wanted;
-use gearmesh::gear::transmission_error::cycle::Settings;
-use gearmesh::gear::transmission_error::load_case::LoadCase;
 
 criterion_group!(name = benches; config = brief(); targets = traces);
 
@@ -42,13 +41,13 @@ fn traces(criterion: &mut Criterion) {
         let cycle = cycle_of(&pair, Linear, false, Settings { corner_contact, ..Settings::default() });
         for (name, design) in &designs {
             group.bench_function(format!("curve, {name}{corner}"), |bencher| {
-                bencher.iter(|| LoadCase::new(black_box(&cycle), design, TORQUE).curve(Wanted::default()));
+                bencher.iter(|| black_box(&cycle).loaded(design, TORQUE).curve(Wanted::default()));
             });
             group.bench_function(format!("curve and summary, {name}{corner}"), |bencher| {
-                bencher.iter(|| LoadCase::new(black_box(&cycle), design, TORQUE).curve_and_summary(Wanted::default()));
+                bencher.iter(|| black_box(&cycle).loaded(design, TORQUE).curve_and_summary(Wanted::default()));
             });
             group.bench_function(format!("peak-to-peak, {name}{corner}"), |bencher| {
-                bencher.iter(|| LoadCase::new(black_box(&cycle), design, TORQUE).peak_to_peak());
+                bencher.iter(|| black_box(&cycle).loaded(design, TORQUE).peak_to_peak());
             });
         }
     }

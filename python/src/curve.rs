@@ -10,10 +10,9 @@ use std::ffi::CString;
 
 use declare::error::{Diagnostic, Failure};
 use gearmesh::gear::contact::{CornerContact, SliceCoupling};
+use gearmesh::gear::mesh::Settings;
+use gearmesh::gear::mesh::answers::curve::{Point, Summary, Wanted};
 use gearmesh::gear::modification::Design;
-use gearmesh::gear::transmission_error::curve::{Point, Summary, Wanted};
-use gearmesh::gear::transmission_error::cycle::Settings;
-use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearstudy::stage::neglected_corners::{Estimated, WithoutCorners};
 
 use crate::design::Designs;
@@ -263,7 +262,7 @@ pub fn transmission_error(
     let is_long = is_long(settings, 1);
     let own_design = design.clone();
     let make = move || {
-        let loading = LoadCase::new(&cycle, &design, torque);
+        let loading = cycle.loaded(&design, torque);
         let mut without = None;
         let (points, summary, largest) = if summary {
             let (points, summary) = loading.curve_and_summary(wanted);
@@ -309,7 +308,7 @@ fn warn_of_corners(
     let Ok(cycle) = stiffness.cycle(Settings { corner_contact: CornerContact::Exact, ..settings }) else {
         return Ok(());
     };
-    let error = py.detach(|| without.error(&LoadCase::new(&cycle, design, torque), "pass `corner_contact=\"exact\"`"));
+    let error = py.detach(|| without.error(&cycle.loaded(design, torque), "pass `corner_contact=\"exact\"`"));
     let Some((_, sentence)) = error else { return Ok(()) };
     // No sentence has a zero byte.
     let sentence = CString::new(sentence)?;

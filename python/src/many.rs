@@ -13,11 +13,9 @@ use rayon::prelude::*;
 
 use declare::error::Diagnostic;
 use gearmesh::gear::geometry::GearPair;
-use gearmesh::gear::transmission_error::beyond_model::BeyondModel;
-use gearmesh::gear::transmission_error::curve::Summary;
-use gearmesh::gear::transmission_error::cycle::MeshCycle;
-use gearmesh::gear::transmission_error::load_case::LoadCase;
-use gearmesh::gear::transmission_error::quantities::{Need, QUANTITIES};
+use gearmesh::gear::mesh::answers::curve::Summary;
+use gearmesh::gear::mesh::answers::quantities::{Need, QUANTITIES};
+use gearmesh::gear::mesh::{BeyondModel, Loaded, Mesh};
 
 use crate::curve::{is_long, wanted};
 use crate::design::Designs;
@@ -78,21 +76,17 @@ impl Many {
         self,
         py: Python<'_>,
         pair: &Arc<GearPair>,
-        cycle: Arc<MeshCycle>,
+        cycle: Arc<Mesh>,
         threads: usize,
         keeps_invalid: bool,
-        of: impl Fn(&LoadCase<'_>) -> Result<T, BeyondModel> + Send + Sync + 'static,
+        of: impl Fn(&Loaded<'_>) -> Result<T, BeyondModel> + Send + Sync + 'static,
     ) -> PyResult<Vec<Option<T>>> {
         let (is_single, count, pair) = (self.is_single, self.count, Arc::clone(pair));
         let is_short = count <= AT_ONCE && !is_long(cycle.settings, count);
         // A thread looks between chunks whether anybody still waits.
         let chunk = if is_long(cycle.settings, AT_ONCE) { 1 } else { AT_ONCE };
-        let found = move |index: usize| {
-            let design = self.designs.at(index, &pair).map_err(Missing::Unfit)?;
-            let loading = LoadCase::new(&cycle, &design, self.torque(index));
-            of(&loading).map_err(Missing::Beyond)
-        };
-        let one = move |index: usize| match found(index) {
+        let is_same = matches!(self.designs.count(None), Ok(None));
+        let kept = move |index: usize, found: Result<T, Missing>| match found {
             Ok(found) => Ok(Some(found)),
             Err(_) if keeps_invalid => Ok(None),
             Err(missing) => Err((index, missing)),
@@ -101,7 +95,19 @@ impl Many {
             if stop.load(Ordering::Relaxed) {
                 return Ok(Vec::new());
             }
-            (first..count.min(first + chunk)).map(&one).collect::<Result<Vec<_>, _>>()
+            let indices = first..count.min(first + chunk);
+            let built = |index: usize| self.designs.at(index, &pair).map_err(Missing::Unfit);
+            let answer = |loading: &Loaded<'_>| of(loading).map_err(Missing::Beyond);
+            if is_same && let Ok(design) = built(first) {
+                // The gaps of the flanks are found once for all torques.
+                let mut meshed = cycle.design(&design);
+                return indices.map(|index| kept(index, answer(&meshed.under(self.torque(index))))).collect();
+            }
+            let alone = |index: usize| {
+                let design = built(index)?;
+                answer(&cycle.loaded(&design, self.torque(index)))
+            };
+            indices.map(|index| kept(index, alone(index))).collect::<Result<Vec<_>, _>>()
         };
         let firsts: Vec<usize> = (0..count).step_by(chunk).collect();
         let found: Result<Vec<Vec<Option<T>>>, (usize, Missing)> = if is_short {

@@ -13,8 +13,8 @@ use declare::error::{Diagnostic, Failure};
 use declare::parameter::Field;
 use gearmesh::gear::compliance::{PairCompliance, Tabulated};
 use gearmesh::gear::geometry::GearPair;
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::stiffness::stiffness;
+use gearmesh::gear::mesh::answers::stiffness::stiffness;
+use gearmesh::gear::mesh::{Mesh, Settings};
 use gearstudy::stage::common;
 use gearstudy::stage::common::{Contact, Slices};
 use gearstudy::stage::kinds::stiffness::Deflection;
@@ -41,7 +41,7 @@ pub struct Stiffness {
     contact: &'static str,
     /// The torque that was stated \[N m\].
     torque: Option<f64>,
-    cycles: Mutex<Vec<Arc<MeshCycle>>>,
+    cycles: Mutex<Vec<Arc<Mesh>>>,
     fields: Py<PyDict>,
 }
 
@@ -191,12 +191,7 @@ impl Stiffness {
     ///
     /// # Errors
     /// As [`settings`] and [`Stiffness::cycle`].
-    pub fn asked(
-        &self,
-        py: Python<'_>,
-        words: Option<&Bound<'_, PyDict>>,
-        positions: usize,
-    ) -> PyResult<Arc<MeshCycle>> {
+    pub fn asked(&self, py: Python<'_>, words: Option<&Bound<'_, PyDict>>, positions: usize) -> PyResult<Arc<Mesh>> {
         self.cycle(settings(py, words, positions)?).map_err(|failure| failed(py, &failure))
     }
 
@@ -204,7 +199,7 @@ impl Stiffness {
     ///
     /// # Errors
     /// When the pair cannot be loaded so.
-    pub fn cycle(&self, settings: Settings) -> Result<Arc<MeshCycle>, Failure> {
+    pub fn cycle(&self, settings: Settings) -> Result<Arc<Mesh>, Failure> {
         // Nobody is waited for: a process that was forked has the lock as it was, and nobody to give it back.
         let cycles = match self.cycles.try_lock() {
             Ok(cycles) => Some(cycles),
@@ -215,7 +210,7 @@ impl Stiffness {
         if let Some(known) = known {
             return Ok(Arc::clone(known));
         }
-        let made = Arc::new(MeshCycle::new(&self.of, self.compliance(), settings)?);
+        let made = Arc::new(Mesh::new(&self.of, self.compliance(), settings).map_err(common::no_mesh)?);
         if let Some(mut cycles) = cycles {
             cycles.truncate(MOST_CYCLES - 1);
             cycles.insert(0, Arc::clone(&made));

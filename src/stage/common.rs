@@ -14,8 +14,8 @@ use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method, PairCompliance
 use gearmesh::gear::contact::{CornerContact, MOST_COUPLED_SLICES, SliceCoupling};
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::geometry::root::RootShape;
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::trace::NODES;
+use gearmesh::gear::mesh::trace::NODES;
+use gearmesh::gear::mesh::{Mesh, MeshError, Settings};
 use gearmesh::gear::work::CONTACT_SOLVES;
 
 /// How the teeth of a pair deflect.
@@ -133,7 +133,7 @@ pub fn mesh_cycle_ports(stiffness: &str) -> Vec<Port> {
 ///
 /// # Errors
 /// When a table is not what its schema says, or the pair cannot be loaded.
-pub fn mesh_cycle(inputs: &Inputs, settings: Settings) -> Result<(GearPair, MeshCycle), Failure> {
+pub fn mesh_cycle(inputs: &Inputs, settings: Settings) -> Result<(GearPair, Mesh), Failure> {
     let cycle = shared_mesh_cycle(inputs, settings)?;
     Ok((cycle.pair.clone(), cycle.counted_separately()))
 }
@@ -142,12 +142,19 @@ pub fn mesh_cycle(inputs: &Inputs, settings: Settings) -> Result<(GearPair, Mesh
 ///
 /// # Errors
 /// As [`mesh_cycle`].
-pub fn shared_mesh_cycle(inputs: &Inputs, settings: Settings) -> Result<Arc<MeshCycle>, Failure> {
+pub fn shared_mesh_cycle(inputs: &Inputs, settings: Settings) -> Result<Arc<Mesh>, Failure> {
     // The pair behind a stage of compliances is always the same, so both are kept with its table.
     let derived = codec::table(inputs)?.derived();
     let read = derived
         .get(|_: &(GearPair, PairCompliance)| true, || Ok::<_, Failure>((pair::of(inputs)?, codec::of(inputs)?)))?;
-    derived.get(|cycle: &MeshCycle| cycle.settings == settings, || MeshCycle::new(&read.0, &read.1, settings))
+    derived.get(|cycle: &Mesh| cycle.settings == settings, || Mesh::new(&read.0, &read.1, settings).map_err(no_mesh))
+}
+
+/// The failure of a stage whose pair has no mesh.
+#[must_use]
+#[allow(clippy::needless_pass_by_value)] // as `map_err` gives it
+pub fn no_mesh(wrong: MeshError) -> Failure {
+    Failure::new(wrong.to_string())
 }
 
 /// That the pair cannot be loaded so, where its tables are there.

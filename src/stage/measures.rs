@@ -7,11 +7,10 @@
 use crate::stage::names::summary;
 use declare::declared::Placed;
 use declare::error::{Diagnostic, suggest};
-use gearmesh::gear::transmission_error::cycle::Settings;
-use gearmesh::gear::transmission_error::load_case::LoadCase;
-use gearmesh::gear::transmission_error::needs::Needs;
-use gearmesh::gear::transmission_error::quantities::{Need, QUANTITIES, Quantity, quantity};
-use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
+use gearmesh::gear::mesh::answers::needs::Needs;
+use gearmesh::gear::mesh::answers::quantities::{Need, QUANTITIES, Quantity, quantity};
+use gearmesh::gear::mesh::answers::sampling::{Against, Sampled};
+use gearmesh::gear::mesh::{Loaded, Settings};
 use studygraph::table::select::CellName;
 
 /// The table of the harmonics.
@@ -141,7 +140,7 @@ impl Measures {
     /// Why there are none.
     pub fn of(
         &self,
-        loading: &LoadCase,
+        loading: &Loaded,
         (settings, harmonics): (Settings, usize),
         again: impl Fn(Settings) -> f64,
     ) -> Result<Vec<f64>, String> {

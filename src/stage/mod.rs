@@ -6,8 +6,8 @@
 pub mod cases;
 pub mod common;
 pub mod compliance;
+pub mod contact_law_error;
 pub mod designs;
-pub mod doubts;
 pub mod evaluated;
 pub mod foreign;
 pub mod formula;

@@ -10,11 +10,10 @@ use crate::stage::{Inputs, common};
 use declare::number::significant;
 use declare::units::in_unit;
 use gearmesh::gear::contact::CornerContact;
-use gearmesh::gear::transmission_error::curve::{Point, Summary, Wanted};
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::load_case::LoadCase;
-use gearmesh::gear::transmission_error::needs::Needs;
-use gearmesh::gear::transmission_error::neglected_corners::NeglectedCorners;
+use gearmesh::gear::mesh::answers::curve::{Point, Summary, Wanted};
+use gearmesh::gear::mesh::answers::needs::Needs;
+use gearmesh::gear::mesh::answers::neglected_corners::NeglectedCorners;
+use gearmesh::gear::mesh::{Loaded, Mesh, Settings};
 use studygraph::warning::{Cases, Warning};
 
 /// Ends a warning of a curve.
@@ -46,9 +45,9 @@ pub struct Estimated {
 impl Estimated {
     /// Of a curve; none where no corner touches.
     #[must_use]
-    pub fn of(loading: &LoadCase, points: &[Point], summary: &Summary) -> Option<Self> {
+    pub fn of(loading: &Loaded, points: &[Point], summary: &Summary) -> Option<Self> {
         let corners = loading.neglected_corners(summary.largest.value)?;
-        let change = (summary.peak_to_peak / corners.peak_to_peak(points, loading.force) - 1.0).abs();
+        let change = (summary.peak_to_peak / corners.peak_to_peak(points, loading.force()) - 1.0).abs();
         Some(Self { corners, change })
     }
 }
@@ -73,7 +72,7 @@ pub struct WithoutCorners<'a> {
 impl<'a> WithoutCorners<'a> {
     /// The curve of a load case; none where it leaves no corner out.
     #[must_use]
-    pub fn of(name: &'a str, torque: f64, loading: &LoadCase) -> Option<Self> {
+    pub fn of(name: &'a str, torque: f64, loading: &Loaded) -> Option<Self> {
         let (points, summary) = loading.curve_and_summary(Wanted::default());
         let estimated = Estimated::of(loading, &points, &summary)?;
         Some(Self { name, torque, peak_to_peak: summary.peak_to_peak, mean: summary.mean, estimated, deviations: "" })
@@ -95,7 +94,7 @@ impl<'a> WithoutCorners<'a> {
 
     /// What the curve of the same load case with corner contact changes; none where that is little. `remedy` ends the sentence.
     #[must_use]
-    pub fn compared(&self, loading: &LoadCase, remedy: &str) -> Option<Warning> {
+    pub fn compared(&self, loading: &Loaded, remedy: &str) -> Option<Warning> {
         self.error(loading, remedy).map(|(size, sentence)| self.warning(size, &sentence))
     }
 
@@ -109,7 +108,7 @@ impl<'a> WithoutCorners<'a> {
 
     /// Relative error of the peak-to-peak, by the same load case with corner contact, and a sentence about it; none where it is small.
     #[must_use]
-    pub fn error(&self, loading: &LoadCase, remedy: &str) -> Option<(f64, String)> {
+    pub fn error(&self, loading: &Loaded, remedy: &str) -> Option<(f64, String)> {
         let with = loading.summary_of(Needs { integrals: true, ..Needs::default() });
         let [before, after] = self.estimated.corners.lengths.map(|length| significant(in_unit(length, "mm"), 3));
         let touch = format!(
@@ -148,7 +147,7 @@ impl<'a> WithoutCorners<'a> {
 /// The mesh cycle of the same inputs with corner contact; none where that is not modelled: a contact ratio too large for two
 /// more pairs, with which corners matter little.
 #[must_use]
-pub fn cycle(inputs: &Inputs, settings: Settings) -> Option<Arc<MeshCycle>> {
+pub fn cycle(inputs: &Inputs, settings: Settings) -> Option<Arc<Mesh>> {
     common::shared_mesh_cycle(inputs, Settings { corner_contact: CornerContact::Exact, ..settings }).ok()
 }
 

@@ -16,8 +16,8 @@ use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method};
 use gearmesh::gear::geometry::root::RootShape;
 use gearmesh::gear::geometry::{GearPair, Rack, Specification};
 use gearmesh::gear::material::Material;
+use gearmesh::gear::mesh::Settings;
 use gearmesh::gear::stability::{Case, Model, Point, Report, Rules, Verdict, check};
-use gearmesh::gear::transmission_error::cycle::Settings;
 
 /// A model of the chain.
 pub fn model(method: impl Method, contact: ContactLaw, coupled: bool) -> Model {

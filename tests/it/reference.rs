@@ -13,8 +13,7 @@ use gearmesh::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use gearmesh::gear::contact::gap::Gaps;
 use gearmesh::gear::geometry::Side;
 use gearmesh::gear::material::Plane;
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::load_case::LoadCase;
+use gearmesh::gear::mesh::{Mesh, Settings};
 use gearmesh::numeric::chebyshev::Series;
 use gearstudy::stage::designs;
 use gearstudy::stage::{Context, Inputs, compliance, pair};
@@ -139,7 +138,7 @@ fn modified_designs_meet_the_reference_at_three_mesh_positions() {
     let pair = pair::read(table(&ran, "pair", "gears"), table(&ran, "pair", "pair")).unwrap();
     let stiffness = |name| table(&ran, "stiffness", name);
     let compliance = compliance::read(stiffness("compliance"), stiffness("neighbours"), stiffness("model")).unwrap();
-    let cycle = MeshCycle::new(&pair, &compliance, Settings::default()).unwrap();
+    let cycle = Mesh::new(&pair, &compliance, Settings::default()).unwrap();
     let families = gearmesh::gear::modification::members();
     let named = designs::read(table(&ran, "designs", "designs"), table(&ran, "designs", "elements"), families).unwrap();
     let pitch_point = pair.pinion.reference_radius * libm::sin(pair.working_pressure_angle);
@@ -176,7 +175,7 @@ fn modified_designs_meet_the_reference_at_three_mesh_positions() {
         let on_line =
             |_: f64, [pinion, gear]: [f64; 2]| built.depth(Side::Pinion, pinion) + built.depth(Side::Gear, gear);
         close(name, by_hand(&on_line), *expected, 1e-11);
-        let state = LoadCase::new(&cycle, &built, 50.0).state(position, pairs);
+        let state = cycle.loaded(&built, 50.0).state(position, pairs);
         close(name, state.transmission_error() * 1e6, by_hand(&|s, _| gaps.at(s).unwrap()), 1e-11);
         compared += 1;
     }

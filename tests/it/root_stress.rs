@@ -7,11 +7,10 @@ use gearmesh::gear::compliance::finite_element::FiniteElement;
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, RootStresses};
 use gearmesh::gear::geometry::{GearPair, Rack, Side, Specification};
 use gearmesh::gear::material::{Material, Plane};
+use gearmesh::gear::mesh::answers::curve::Wanted as Asked;
+use gearmesh::gear::mesh::{Mesh, Settings};
 use gearmesh::gear::modification::Design;
 use gearmesh::gear::rating::root::nominal_root_stress;
-use gearmesh::gear::transmission_error::curve::Wanted as Asked;
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::gear::work::{MESH_FACTORISATIONS, ROOT_STRESSES};
 use gearstudy::program;
 use studygraph::runner::events::Silent;
@@ -139,10 +138,10 @@ fn the_columns_are_what_the_kernels_give() {
     let method = FiniteElement { plane: Plane::Strain, elements_across: 6 };
     let assumptions = Assumptions { contact: ContactLaw::Resolved, ..Assumptions::default() };
     let (tabulated, roots) = method.tabulate_with_roots(&pair, assumptions).unwrap();
-    let cycle = MeshCycle::new(&pair, &tabulated.compliance, Settings::default()).unwrap().with_roots(&roots);
+    let cycle = Mesh::new(&pair, &tabulated.compliance, Settings::default()).unwrap().with_roots(&roots);
     let design = Design::default();
     let asked = Asked { harmonics: 8, root_stress: true, ..Asked::default() };
-    let (points, summary) = LoadCase::new(&cycle, &design, 100.0).curve_and_summary(asked);
+    let (points, summary) = cycle.loaded(&design, 100.0).curve_and_summary(asked);
 
     let (_, [table, curve]) = run(&study(1), 0, &COLUMNS);
     let unmodified = |table: &Table| -> Vec<usize> {

@@ -13,6 +13,12 @@ use super::digest::{Digest, Writer};
 pub struct Seed(Digest);
 
 impl Seed {
+    /// A seed of a program without studies.
+    #[must_use]
+    pub fn new(number: u64) -> Self {
+        Self::of_stage(number, "")
+    }
+
     /// The seed of the stage `stage` in a study whose seed is `study`.
     #[must_use]
     pub fn of_stage(study: u64, stage: &str) -> Self {

@@ -7,31 +7,17 @@ use gearmesh::prelude::*;
 const TORQUES: [f64; 4] = [80.0, 120.0, 160.0, 200.0];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let gear = |teeth: u32, bore_radius: f64| Specification {
-        teeth,
-        module: 3e-3,
-        pressure_angle: 20_f64.to_radians(),
-        profile_shift: 0.0,
-        thickness_allowance: 0.0,
-        cutter: None,
-        rack: Rack::ISO_53_A,
-        tip_radius: None,
-        face_width: 20e-3,
-        bore_radius,
-        material: Material::STEEL,
+    let gear = |teeth: u32, bore_radius: f64| {
+        Specification::spur(teeth, mm(3.0)).face_width(mm(20.0)).bore_radius(bore_radius)
     };
     let pair = GearPair::new(gear(24, 18e-3), gear(36, 28e-3), None)?;
     let compliance = Energy::default().tabulate(&pair, Assumptions::default())?.compliance;
-    let cycle = MeshCycle::new(&pair, &compliance, Settings::default())?;
+    let mesh = Mesh::new(&pair, &compliance, Settings::default())?;
     let design = |point: &[f64]| -> Result<Design, Diagnostic> {
-        let (amount, start) = (Amount::Depth(point[0]), Start::Fraction(point[1]));
-        let relief = TipRelief { amount, start, counted_from: FromTip::Tip, curve: Curve::Linear };
-        let mut design = Design::default();
-        design.add(Gears::Both, &relief, &pair)?;
-        Ok(design)
+        Design::of(Gears::Both, &TipRelief::linear(point[0], Start::Fraction(point[1])), &pair)
     };
     let worst = |design: &Design| {
-        let each = TORQUES.map(|torque| LoadCase::new(&cycle, design, torque).peak_to_peak());
+        let each = TORQUES.map(|torque| mesh.loaded(design, torque).peak_to_peak());
         each.into_iter().fold(0.0, f64::max)
     };
     let bounds = Bounds::new(vec![(0.0, 40e-6), (0.2, 1.0)])?;

@@ -18,49 +18,35 @@ fn least(rounds: usize, calls: u32, mut call: impl FnMut()) -> f64 {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let gear = |teeth: u32, bore_radius: f64| Specification {
-        teeth,
-        module: 3e-3,
-        pressure_angle: 20_f64.to_radians(),
-        profile_shift: 0.0,
-        thickness_allowance: 0.0,
-        cutter: None,
-        rack: Rack::ISO_53_A,
-        tip_radius: None,
-        face_width: 20e-3,
-        bore_radius,
-        material: Material::STEEL,
+    let gear = |teeth: u32, bore_radius: f64| {
+        Specification::spur(teeth, mm(3.0)).face_width(mm(20.0)).bore_radius(bore_radius)
     };
     let pair = GearPair::new(gear(24, 18e-3), gear(36, 28e-3), None)?;
     let assumptions = Assumptions { coupled: false, ..Assumptions::default() };
     let compliance = Energy::default().tabulate(&pair, assumptions)?.compliance;
-    let cycle = MeshCycle::new(&pair, &compliance, Settings::default())?;
+    let mesh = Mesh::new(&pair, &compliance, Settings::default())?;
     let design = |amount: f64| -> Result<Design, Diagnostic> {
-        let (amount, start) = (Amount::Depth(amount), Start::Fraction(0.8));
-        let relief = TipRelief { amount, start, counted_from: FromTip::Tip, curve: Curve::Linear };
-        let mut design = Design::default();
-        design.add(Gears::Both, &relief, &pair)?;
-        Ok(design)
+        Design::of(Gears::Both, &TipRelief::linear(amount, Start::Fraction(0.8)), &pair)
     };
     let wanted = Wanted { harmonics: 8, ..Wanted::default() };
     let curve = least(20, 200, || {
         let design = design(14e-6);
         if let Ok(design) = &design {
-            black_box(LoadCase::new(&cycle, design, 150.0).curve_and_summary(wanted));
+            black_box(mesh.loaded(design, 150.0).curve_and_summary(wanted));
         }
     });
     let many = least(5, 1, || {
         for index in 0..10_000 {
             if let Ok(design) = design(30e-6 * f64::from(index) / 10_000.0) {
-                black_box(LoadCase::new(&cycle, &design, 150.0).peak_to_peak());
+                black_box(mesh.loaded(&design, 150.0).peak_to_peak());
             }
         }
     });
     let from_gears = least(5, 5, || {
         if let Ok(tabulated) = Energy::default().tabulate(&pair, assumptions)
-            && let Ok(cycle) = MeshCycle::new(&pair, &tabulated.compliance, Settings::default())
+            && let Ok(mesh) = Mesh::new(&pair, &tabulated.compliance, Settings::default())
         {
-            black_box(LoadCase::new(&cycle, &Design::default(), 150.0).curve(Wanted::default()));
+            black_box(mesh.loaded(&Design::default(), 150.0).curve(Wanted::default()));
         }
     });
     println!("{{\"curve\": {curve}, \"designs\": {many}, \"from_gears\": {from_gears}}}");

@@ -8,34 +8,21 @@ const SAMPLES: u32 = 1000;
 const LIMIT: f64 = 0.9e-6;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let gear = |teeth: u32, bore_radius: f64| Specification {
-        teeth,
-        module: 3e-3,
-        pressure_angle: 20_f64.to_radians(),
-        profile_shift: 0.0,
-        thickness_allowance: 0.0,
-        cutter: None,
-        rack: Rack::ISO_53_A,
-        tip_radius: None,
-        face_width: 20e-3,
-        bore_radius,
-        material: Material::STEEL,
+    let gear = |teeth: u32, bore_radius: f64| {
+        Specification::spur(teeth, mm(3.0)).face_width(mm(20.0)).bore_radius(bore_radius)
     };
     let pair = GearPair::new(gear(24, 18e-3), gear(36, 28e-3), None)?;
     let compliance = Energy::default().tabulate(&pair, Assumptions::default())?.compliance;
-    let cycle = MeshCycle::new(&pair, &compliance, Settings::default())?;
+    let mesh = Mesh::new(&pair, &compliance, Settings::default())?;
     let mut errors = Vec::new();
     for sample in 0..SAMPLES {
         // Points of Kronecker's lattice: as even as random ones are not, and the same in any language.
         let share = |root: f64| (f64::from(sample) * root).fract();
         let amount = 14e-6 + 4e-6 * (share(std::f64::consts::SQRT_2) - 0.5);
         let slope = 16e-6 * (share(3_f64.sqrt()) - 0.5);
-        let (amount, start) = (Amount::Depth(amount), Start::Fraction(0.8));
-        let relief = TipRelief { amount, start, counted_from: FromTip::Tip, curve: Curve::Linear };
-        let mut design = Design::default();
-        design.add(Gears::Both, &relief, &pair)?;
+        let mut design = Design::of(Gears::Both, &TipRelief::linear(amount, Start::Fraction(0.8)), &pair)?;
         design.add(Gears::Pinion, &HelixSlope { amount: slope }, &pair)?;
-        errors.push(LoadCase::new(&cycle, &design, 150.0).peak_to_peak());
+        errors.push(mesh.loaded(&design, 150.0).peak_to_peak());
     }
     let below = errors.iter().filter(|error| **error <= LIMIT).count();
     errors.sort_by(f64::total_cmp);

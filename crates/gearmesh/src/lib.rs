@@ -5,43 +5,30 @@
 //! any number of threads. Must not know: YAML, studies, files.
 //!
 //! The way from a pair to its transmission error is [`gear::geometry::GearPair`] → [`gear::compliance::Method::tabulate`] →
-//! [`gear::transmission_error::cycle::MeshCycle`], which no modification changes →
-//! [`gear::transmission_error::load_case::LoadCase`], one design under one torque → its curve, its summary, its
-//! peak-to-peak. [`prelude`] has the names that this takes.
+//! [`gear::mesh::Mesh`], which no modification changes → [`gear::mesh::MeshedDesign`], the gaps of one design →
+//! [`gear::mesh::Loaded`], one torque → its curve, its summary, its peak-to-peak. [`prelude`] has the names that this takes.
 //!
 //! # The transmission error of a relieved pair
 //!
 //! ```
 //! use gearmesh::prelude::*;
+//!
 //! fn main() -> Result<(), Box<dyn std::error::Error>> {
-//!     let gear = |teeth: u32, bore_radius: f64| Specification {
-//!         teeth,
-//!         module: 3e-3,
-//!         pressure_angle: 20_f64.to_radians(),
-//!         profile_shift: 0.0, thickness_allowance: 0.0, cutter: None,
-//!         rack: Rack::ISO_53_A,
-//!         tip_radius: None,
-//!         face_width: 20e-3,
-//!         bore_radius,
-//!         material: Material::STEEL,
-//!     };
-//!     let pair = GearPair::new(gear(24, 18e-3), gear(36, 28e-3), None)?;
-//!     let compliance = Energy::default().tabulate(&pair, Assumptions::default())?.compliance;
-//!     let cycle = MeshCycle::new(&pair, &compliance, Settings::default())?;
-//!     let (amount, start) = (Amount::Depth(14e-6), Start::Fraction(0.8));
-//!     let relief = TipRelief { amount, start, counted_from: FromTip::Tip, curve: Curve::Linear };
-//!     let mut design = Design::default();
-//!     design.add(Gears::Both, &relief, &pair)?;
-//!     for point in LoadCase::new(&cycle, &design, 150.0).curve_and_summary(Wanted::default()).0 {
+//!     let gear = |teeth, bore| Specification::spur(teeth, mm(3.0)).face_width(mm(20.0)).bore_radius(mm(bore));
+//!     let pair = GearPair::new(gear(24, 18.0), gear(36, 28.0), None)?;
+//!     let mesh = Mesh::by(&pair, &Energy::default())?;
+//!     let design = Design::of(Gears::Both, &TipRelief::linear(um(14.0), Start::Fraction(0.8)), &pair)?;
+//!     for point in mesh.loaded(&design, 150.0).curve(Wanted::default()) {
 //!         println!("{:.4} mm: {:.3} um", point.cycle_position * 1e3, point.transmission_error * 1e6);
 //!     }
-//! #   let error = |design: &Design| LoadCase::new(&cycle, design, 150.0).peak_to_peak();
+//! #   let error = |design: &Design| mesh.loaded(design, 150.0).peak_to_peak();
 //! #   assert!(error(&design) < 0.2 * error(&Design::default()));
 //!     Ok(())
 //! }
 //! ```
 //!
-//! The summary beside the curve has the peak-to-peak, which the curve spans, mean, variance and harmonics.
+//! [`gear::mesh::Loaded::ask`] gives any of [`gear::mesh::answers::quantities::QUANTITIES`] without the curve; a curve with
+//! its summary has peak-to-peak, mean, variance and harmonics.
 //!
 //! # The best relief for a torque
 //!
@@ -49,30 +36,16 @@
 //! use gearmesh::prelude::*;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! # let gear = |teeth: u32, bore_radius: f64| Specification {
-//! #     teeth,
-//! #     module: 3e-3,
-//! #     pressure_angle: 20_f64.to_radians(),
-//! #     profile_shift: 0.0, thickness_allowance: 0.0, cutter: None,
-//! #     rack: Rack::ISO_53_A,
-//! #     tip_radius: None,
-//! #     face_width: 20e-3,
-//! #     bore_radius,
-//! #     material: Material::STEEL,
-//! # };
-//! # let pair = GearPair::new(gear(24, 18e-3), gear(36, 28e-3), None)?;
-//! # let compliance = Energy::default().tabulate(&pair, Assumptions::default())?.compliance;
-//! # let cycle = MeshCycle::new(&pair, &compliance, Settings::default())?;
-//! // Pair and cycle as above. Amount and fraction of long relief are free.
+//! # let gear = |teeth, bore| Specification::spur(teeth, mm(3.0)).face_width(mm(20.0)).bore_radius(mm(bore));
+//! # let pair = GearPair::new(gear(24, 18.0), gear(36, 28.0), None)?;
+//! # let mesh = Mesh::by(&pair, &Energy::default())?;
+//! // Pair and mesh as above. Amount and fraction of long relief are free.
 //! let peak_to_peak = |point: &Vec<f64>| -> Result<f64, Diagnostic> {
-//!     let (amount, start) = (Amount::Depth(point[0]), Start::Fraction(point[1]));
-//!     let relief = TipRelief { amount, start, counted_from: FromTip::Tip, curve: Curve::Linear };
-//!     let mut design = Design::default();
-//!     design.add(Gears::Both, &relief, &pair)?;
-//!     Ok(LoadCase::new(&cycle, &design, 150.0).peak_to_peak())
+//!     let design = Design::of(Gears::Both, &TipRelief::linear(point[0], Start::Fraction(point[1])), &pair)?;
+//!     Ok(mesh.loaded(&design, 150.0).peak_to_peak())
 //! };
-//! let bounds = Bounds::new(vec![(0.0, 30e-6), (0.2, 1.0)])?;
-//! let mut search = optimizer(&DifferentialEvolution::default(), bounds, Seed::of_stage(1, "relief"))?;
+//! let bounds = Bounds::new(vec![(0.0, um(30.0)), (0.2, 1.0)])?;
+//! let mut search = optimizer(&DifferentialEvolution::default(), bounds, Seed::new(1))?;
 //! // A relief that does not fit is worth nothing.
 //! let evaluate = |points: &[Vec<f64>]| -> Result<Vec<f64>, Failure> {
 //!     Ok(points.iter().map(|point| peak_to_peak(point).unwrap_or(f64::INFINITY)).collect())

@@ -18,10 +18,9 @@ use declare::record::Record;
 use declare::units::{TORQUE, in_unit};
 use declare::work::Work;
 use gearmesh::gear::geometry::{GearPair, Side};
+use gearmesh::gear::mesh::answers::hunting::{Teeth, hunting_period};
+use gearmesh::gear::mesh::{Mesh, Settings};
 use gearmesh::gear::modification::{self, Design};
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::hunting::{Teeth, hunting_period};
-use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::gear::work::CONTACT_SOLVES;
 use gearmesh::numeric::spectrum::amplitudes;
 use rayon::prelude::*;
@@ -139,13 +138,13 @@ impl Stated {
     fn answer(
         &self,
         context: &Context,
-        cycle: &MeshCycle,
+        cycle: &Mesh,
         (name, design): (&str, &Design),
         torque: f64,
         (teeth, period): (&Teeth, usize),
         steps: &Steps,
     ) -> Result<Found, Failure> {
-        let loading = || LoadCase::new(cycle, design, torque).with_teeth(teeth);
+        let loading = || cycle.loaded(design, torque).with_teeth(teeth);
         let parts: Vec<Vec<f64>> = (0..period.div_ceil(AT_ONCE))
             .into_par_iter()
             .map(|part| {
@@ -166,23 +165,18 @@ impl Stated {
     }
 
     /// Reports the error by `corner_contact: none`, of the mesh cycle without deviations of single teeth.
-    fn warn_of_corners(
-        &self,
-        (context, inputs): (&Context, &Inputs),
-        cycle: &MeshCycle,
-        tasks: &[(String, Design, f64)],
-    ) {
+    fn warn_of_corners(&self, (context, inputs): (&Context, &Inputs), cycle: &Mesh, tasks: &[(String, Design, f64)]) {
         if !context.is_heard {
             return;
         }
         let without: Vec<Option<WithoutCorners>> = tasks
             .iter()
-            .map(|(name, design, torque)| WithoutCorners::of(name, *torque, &LoadCase::new(cycle, design, *torque)))
+            .map(|(name, design, torque)| WithoutCorners::of(name, *torque, &cycle.loaded(design, *torque)))
             .collect();
         let Some(worst) = WithoutCorners::worst(&without) else { return };
         let Some(exact) = neglected_corners::cycle(inputs, self.settings()) else { return };
         let (_, design, torque) = &tasks[worst];
-        let loading = LoadCase::new(&exact, design, *torque);
+        let loading = exact.loaded(design, *torque);
         let mean = without[worst].map(|without| WithoutCorners { deviations: MEAN_TEETH, ..without });
         if let Some(warning) = mean.and_then(|without| without.compared(&loading, REMEDY)) {
             (context.warn)(warning);
@@ -272,7 +266,7 @@ impl Stage for Stated {
         let mut cases: Vec<Case> = Vec::with_capacity(tasks.len());
         for (name, design, torque) in tasks.clone() {
             let found = self.answer(context, &cycle, (&name, &design), torque, (&stated.teeth, period), &steps)?;
-            let plain = LoadCase::new(&cycle, &design, torque).peak_to_peak();
+            let plain = cycle.loaded(&design, torque).peak_to_peak();
             let orders = period.saturating_mul(self.harmonics);
             let orders = if context.demand.table(tables::SPECTRUM) { orders } else { 0 };
             let amplitudes = amplitudes(&found.errors, orders.min(found.errors.len() / 2));

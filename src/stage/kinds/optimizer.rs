@@ -15,8 +15,8 @@ use self::passes::{Found, Run};
 use self::tables::{BestRow, FrontRow};
 use crate::stage::cases::{Cases, Loads};
 use crate::stage::common::{Contact, Slices};
+use crate::stage::contact_law_error::ReportedContactLawError;
 use crate::stage::designs::{self, Element, Elements, NamedDesign};
-use crate::stage::doubts::Doubted;
 use crate::stage::{
     Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, Stage, common, names, root_influences,
 };
@@ -25,10 +25,9 @@ use declare::error::{Diagnostic, Failure, Faults};
 use declare::record::{Record, Value};
 use declare::units::RATIO;
 use declare::{Declared, Words};
+use gearmesh::gear::mesh::{Loaded, Mesh, Settings};
 use gearmesh::gear::modification::template::{Fitted, Template};
 use gearmesh::gear::modification::{self, Design};
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::optimize::bounds::Bounds;
 use gearmesh::optimize::search::Optimizer as Search;
 use gearmesh::optimize::settled::Settled;
@@ -216,35 +215,29 @@ impl Optimizer {
     }
 
     /// What a point is worth; nothing where the design cannot be built.
-    fn worth(&self, cycle: &MeshCycle, fitted: &Fitted, point: &[f64]) -> Worth {
+    fn worth(&self, cycle: &Mesh, fitted: &Fitted, point: &[f64]) -> Worth {
         let design = fitted.design(point).ok();
         let values = design.and_then(|design| self.measured(cycle, fitted, &design));
         self.goal.worth(&self.cases, &values.unwrap_or_else(|| vec![None]))
     }
 
     /// All measures of each case.
-    fn measured(&self, cycle: &MeshCycle, fitted: &Fitted, design: &Design) -> Option<Vec<Option<Vec<f64>>>> {
+    fn measured(&self, cycle: &Mesh, fitted: &Fitted, design: &Design) -> Option<Vec<Option<Vec<f64>>>> {
         self.of_cases((fitted, cycle), design, |loading, _| self.goal.of_case(loading))
     }
 
     /// A value of each case; none where a design is no design any more with what is off.
     fn of_cases<T: Default + Clone>(
         &self,
-        (fitted, cycle): (&Fitted, &MeshCycle),
+        (fitted, cycle): (&Fitted, &Mesh),
         design: &Design,
-        mut value: impl FnMut(&LoadCase, f64) -> T,
+        mut value: impl FnMut(&Loaded, f64) -> T,
     ) -> Option<Vec<T>> {
         let mut values = vec![T::default(); self.cases.all.len()];
         for off in self.cases.designs(design, fitted.pair()).ok()? {
-            // Gaps do not ask for the torque.
-            let mut loaded: Option<LoadCase> = None;
+            let mut meshed = cycle.design(&off.design);
             for (place, torque) in &off.cases {
-                let loading = match &loaded {
-                    Some(other) => other.with_torque(*torque),
-                    None => LoadCase::new(cycle, &off.design, *torque),
-                };
-                values[*place] = value(&loading, *torque);
-                loaded = Some(loading);
+                values[*place] = value(&meshed.under(*torque), *torque);
             }
         }
         Some(values)
@@ -276,11 +269,11 @@ impl Optimizer {
     }
 
     /// Says what the law of contact may be off by at the design that was found.
-    fn warn(&self, context: &Context, design: &Design, (fitted, cycle): (&Fitted, &MeshCycle)) {
+    fn warn(&self, context: &Context, design: &Design, (fitted, cycle): (&Fitted, &Mesh)) {
         let told = self.of_cases((fitted, cycle), design, |loading, torque| {
-            let doubt = loading.contact_doubt()?;
+            let doubt = loading.contact_law_error()?;
             let peak_to_peak = loading.peak_to_peak();
-            Doubted { design: &self.stated.name, torque, doubt, peak_to_peak }.told()
+            ReportedContactLawError { design: &self.stated.name, torque, doubt, peak_to_peak }.told()
         });
         told.into_iter().flatten().flatten().for_each(|case| (context.warn)(Warning::Cases(case)));
     }
@@ -289,7 +282,7 @@ impl Optimizer {
         &self,
         context: &Context,
         found: &Found,
-        (fitted, cycle): (&Fitted, &MeshCycle),
+        (fitted, cycle): (&Fitted, &Mesh),
     ) -> Result<Vec<Table>, Failure> {
         let best = &found.best;
         let failed = |error: TableError| Failure::new(error.to_string());

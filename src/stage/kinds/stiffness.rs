@@ -20,9 +20,9 @@ use declare::{Declared, Words};
 use gearmesh::gear::compliance::iso6336;
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, MeshFacts, RootStress, Tabulated};
 use gearmesh::gear::geometry::Side;
-use gearmesh::gear::transmission_error::curve::Point;
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::stiffness::{StiffnessSummary, stiffness};
+use gearmesh::gear::mesh::answers::curve::Point;
+use gearmesh::gear::mesh::answers::stiffness::{StiffnessSummary, stiffness};
+use gearmesh::gear::mesh::{Mesh, Settings};
 use gearmesh::gear::work::{CONTACT_SOLVES, MESH_FACTORISATIONS};
 use studygraph::table::columns::Columns;
 use studygraph::table::data::{Cell, Table, TableError};
@@ -371,7 +371,7 @@ impl Stage for Stiffness {
         );
         context.check_stop()?;
 
-        let cycle = MeshCycle::new(&pair, &compliance, self.settings())?;
+        let cycle = Mesh::new(&pair, &compliance, self.settings()).map_err(common::no_mesh)?;
         let (points, of_curve) = stiffness(&cycle, self.deflection.torque.unwrap_or(ANY_TORQUE));
         context.work.add(&cycle.work());
         let rows: Vec<CurveRow> = (1..).zip(points).collect();

@@ -25,7 +25,7 @@ use declare::error::Diagnostic;
 use declare::record::Value;
 use declare::record::varied::{Axis, Slot, Varied};
 use declare::work::Work;
-use gearmesh::gear::transmission_error::cycle::Settings;
+use gearmesh::gear::mesh::Settings;
 use gearmesh::gear::work::CONTACT_SOLVES;
 use studygraph::table::schema::{self, Schema};
 

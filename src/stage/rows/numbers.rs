@@ -5,8 +5,7 @@
 use super::output::Output;
 use crate::stage::measures::{Measure, Measures};
 use declare::units::showing;
-use gearmesh::gear::transmission_error::cycle::Settings;
-use gearmesh::gear::transmission_error::load_case::LoadCase;
+use gearmesh::gear::mesh::{Loaded, Settings};
 
 /// The field of the stage that says how many harmonics there are.
 pub const HARMONICS: &str = "harmonics";
@@ -39,7 +38,7 @@ impl Numbers {
     /// Why there are none.
     pub fn of(
         &self,
-        loading: &LoadCase,
+        loading: &Loaded,
         sampling: (Settings, usize),
         again: impl Fn(Settings) -> f64,
     ) -> Result<Vec<f64>, String> {

@@ -21,10 +21,9 @@ use declare::record::varied::Axis;
 use declare::record::{PlacedValue, Record, Value};
 use declare::units::in_unit;
 use gearmesh::gear::geometry::GearPair;
+use gearmesh::gear::mesh::{Mesh, Settings};
 use gearmesh::gear::modification::template::{Fitted, Template};
 use gearmesh::gear::modification::{self, Design};
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::load_case::LoadCase;
 use studygraph::warning::Warning;
 
 /// Names of fields and tables of the stage that loads a pair, and of the one that has the designs.
@@ -58,7 +57,7 @@ enum DesignSource {
 /// What rows with the same pair and compliances share.
 pub struct Upstream<'q> {
     pair: GearPair,
-    base: MeshCycle,
+    base: Mesh,
     /// The design's.
     name: String,
     design: Option<Design>,
@@ -79,7 +78,7 @@ pub struct Before {
 struct CycleOfRow {
     settings: Settings,
     harmonics: usize,
-    cycle: MeshCycle,
+    cycle: Mesh,
 }
 
 impl Quick {
@@ -176,19 +175,13 @@ impl Quick {
             Ok(ready) => ready,
             Err(message) => return found.extend(rows.map(|_| Err(message.clone()))),
         };
-        // Gaps do not ask for the torque.
-        let mut loaded: Option<LoadCase> = None;
+        let mut meshed = sampled.cycle.design(design);
         for row in rows {
             let torque = self.torque.map_or(self.fixed_torque, |column| row[column]);
-            let loading = match &loaded {
-                Some(other) => other.with_torque(torque),
-                None => LoadCase::new(&sampled.cycle, design, torque),
-            };
-            let again =
-                |settings: Settings| LoadCase::new(&sampled.cycle.sampled(settings), design, torque).peak_to_peak();
+            let loading = meshed.under(torque);
+            let again = |settings: Settings| sampled.cycle.sampled(settings).loaded(design, torque).peak_to_peak();
             let numbers = self.numbers.of(&loading, (sampled.settings, sampled.harmonics), again);
             found.push(numbers.map_err(|message| format!("{}: {message}", chain.links[self.last].kind.name)));
-            loaded = Some(loading);
         }
     }
 
@@ -213,10 +206,10 @@ impl Quick {
         let values = varied.map(written).collect::<Vec<_>>().join(", ");
         // Rows that differ in their torque alone have one design.
         let name = if values.is_empty() { upstream.name.clone() } else { values };
-        let loading = LoadCase::new(&sampled.cycle, design, torque);
+        let loading = sampled.cycle.loaded(design, torque);
         let without = WithoutCorners::of(&name, torque, &loading).filter(WithoutCorners::may_matter)?;
         let cycle = neglected_corners::cycle(&chain.inputs(self.last, tables, outer), sampled.settings)?;
-        without.compared(&LoadCase::new(&cycle, design, torque), REMEDY)
+        without.compared(&cycle.loaded(design, torque), REMEDY)
     }
 
     /// The cycle and the design of a row, found or as the row before had them.

@@ -12,7 +12,7 @@ use gearmesh::gear::compliance::ToothCompliance;
 use gearmesh::gear::compliance::across_face::Layers;
 use gearmesh::gear::finite_elements::element::{RULE, shape};
 use gearmesh::gear::finite_elements::gear_model::GearModel;
-use gearmesh::gear::finite_elements::mesh::{Mesh, Sizing};
+use gearmesh::gear::finite_elements::mesh::{ElementMesh, Sizing};
 use gearmesh::gear::geometry::{Gear, Specification};
 use gearmesh::gear::material::Plane;
 use gearmesh::numeric::chebyshev::Series;
@@ -30,7 +30,7 @@ struct Plate {
 }
 
 impl Plate {
-    fn new(mesh: &Mesh) -> Self {
+    fn new(mesh: &ElementMesh) -> Self {
         let mut plate = Self { nodes: Vec::new(), elements: Vec::new(), held: Vec::new() };
         let mut known = BTreeMap::new();
         for turns in [0.0, 1.0, -1.0] {

@@ -11,13 +11,12 @@ use gearmesh::gear::compliance::finite_element::FiniteElement;
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method, PairCompliance};
 use gearmesh::gear::contact::flattening::{Bodies, combined_radius};
 use gearmesh::gear::finite_elements::element::{self, NODES};
-use gearmesh::gear::finite_elements::mesh::Mesh;
+use gearmesh::gear::finite_elements::mesh::ElementMesh;
 use gearmesh::gear::geometry::root::RootShape;
 use gearmesh::gear::geometry::{GearPair, Side};
 use gearmesh::gear::material::Plane;
+use gearmesh::gear::mesh::{Equilibrium, Mesh, Settings};
 use gearmesh::gear::modification::Design;
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::load_case::{Equilibrium, LoadCase};
 use gearmesh::numeric::chebyshev::Series;
 
 const MODULE: f64 = 3e-3;
@@ -50,7 +49,7 @@ fn beyond_half_space(pair: &GearPair, side: Side, s: f64) -> f64 {
 }
 
 /// The element around a point, and its shape functions there.
-fn inside(mesh: &Mesh, point: [f64; 2]) -> ([usize; NODES], [f64; NODES]) {
+fn inside(mesh: &ElementMesh, point: [f64; 2]) -> ([usize; NODES], [f64; NODES]) {
     for (index, &nodes) in mesh.elements.iter().enumerate() {
         let corners = mesh.corners(index);
         let mut at = [0.0; 2];
@@ -104,8 +103,8 @@ fn completed(pair: &GearPair, mut compliance: PairCompliance, path: &[f64]) -> P
 
 /// Our equilibrium.
 fn equilibrium(pair: &GearPair, compliance: &PairCompliance, torque: f64, path: &[f64]) -> Equilibrium {
-    let cycle = MeshCycle::new(pair, compliance, Settings::default()).unwrap();
-    LoadCase::new(&cycle, &Design::default(), torque).state(path[0] - pair.start_of_contact, path.len())
+    let cycle = Mesh::new(pair, compliance, Settings::default()).unwrap();
+    cycle.loaded(&Design::default(), torque).state(path[0] - pair.start_of_contact, path.len())
 }
 
 /// What both find for one turn of the pinion.

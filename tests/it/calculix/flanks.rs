@@ -6,7 +6,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use gearmesh::gear::contact::separation::{Facing, Touch};
-use gearmesh::gear::finite_elements::mesh::Mesh;
+use gearmesh::gear::finite_elements::mesh::ElementMesh;
 use gearmesh::gear::geometry::{Gear, GearPair, Side};
 use gearmesh::gear::modification::Design;
 
@@ -84,7 +84,7 @@ impl Flanks<'_> {
 
 /// Takes `depth` \[m\] of a roll angle off the right flank, normal to it; inside the tooth less, nothing on the
 /// centreline and in the body.
-pub fn take_off(mesh: &mut Mesh, gear: &Gear, depth: impl Fn(f64) -> f64) {
+pub fn take_off(mesh: &mut ElementMesh, gear: &Gear, depth: impl Fn(f64) -> f64) {
     let module = gear.specification.module;
     for node in &mut mesh.nodes {
         let [x, y] = node.map(|length| length * module);

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use super::flanks::{Flanks, Nearest, take_off};
 use super::wheel::Wheel;
 use super::{program, recorded};
-use gearmesh::gear::finite_elements::mesh::{Edge, Focus, Mesh, Sizing};
+use gearmesh::gear::finite_elements::mesh::{Edge, ElementMesh, Focus, Sizing};
 use gearmesh::gear::finite_elements::outline::Outline;
 use gearmesh::gear::finite_elements::root_stress::{along_surface, largest};
 use gearmesh::gear::geometry::root::RootShape;
@@ -159,7 +159,7 @@ struct Placed {
     /// The gear's centre \[mm\]; the pinion's is 0.
     centre: [f64; 2],
     /// The meshes of the teeth in contact, pair by pair, and by how much a gear is turned anticlockwise.
-    teeth: [(Vec<Mesh>, f64); 2],
+    teeth: [(Vec<ElementMesh>, f64); 2],
     /// Nodes, elements and surfaces.
     deck: String,
 }
@@ -205,13 +205,13 @@ fn place(case: &Case, nearest: &[Nearest], fineness: Fineness) -> Placed {
     let wheels = [(Side::Pinion, "PINION"), (Side::Gear, "GEAR")].map(|(side, name)| {
         let gear = pair.side(side);
         let outline = Outline::new(gear, &gear.root(RootShape::Trochoid).unwrap()).unwrap();
-        let coarse = Mesh::new(&outline, &Sizing::even(fineness.level)).unwrap();
+        let coarse = ElementMesh::new(&outline, &Sizing::even(fineness.level)).unwrap();
         let fine = |(k, place): (usize, &Nearest)| {
-            let mut mesh = Mesh::new(&outline, &sizing(gear, place.rolls[side as usize], fineness)).unwrap();
+            let mut mesh = ElementMesh::new(&outline, &sizing(gear, place.rolls[side as usize], fineness)).unwrap();
             take_off(&mut mesh, gear, |roll| case.depth(side, k, roll));
             mesh
         };
-        let fine: Vec<Mesh> = nearest.iter().enumerate().map(fine).collect();
+        let fine: Vec<ElementMesh> = nearest.iter().enumerate().map(fine).collect();
         let teeth = gear.specification.teeth as usize;
         let mut meshes = vec![&coarse; teeth];
         for (k, mesh) in fine.iter().enumerate() {

@@ -15,12 +15,11 @@ use gearmesh::gear::geometry::outline::tip::Tip;
 use gearmesh::gear::geometry::root::RootShape;
 use gearmesh::gear::geometry::{GearPair, Side};
 use gearmesh::gear::material::Plane;
+use gearmesh::gear::mesh::{Mesh, Settings};
 use gearmesh::gear::modification::curve::Curve;
 use gearmesh::gear::modification::relief::{Amount, FromTip, Start};
 use gearmesh::gear::modification::tip_relief::TipRelief;
 use gearmesh::gear::modification::{Design, Gears};
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::numeric::crossing::bracketed;
 
 /// A case but for its plane, and its coarsest mesh.
@@ -145,9 +144,9 @@ fn ours(case: &Case) -> [f64; 2] {
     };
     let compliance = method.tabulate(pair, assumptions).unwrap().compliance;
     let settings = Settings { corner_contact: CornerContact::Exact, ..Settings::default() };
-    let cycle = MeshCycle::new(pair, &compliance, settings).unwrap();
+    let cycle = Mesh::new(pair, &compliance, settings).unwrap();
     let position = path.iter().map(|s| s - pair.start_of_contact).find(|position| *position >= 0.0).unwrap();
-    let at = |torque: f64| LoadCase::new(&cycle, design, torque).state(position, 1);
+    let at = |torque: f64| cycle.loaded(design, torque).state(position, 1);
     let torque = bracketed(0.1, 1e3, |torque| at(torque).transmission_error() - approach).unwrap();
     let loads = at(torque).balance.loads;
     let first = loads.iter().find(|load| **load > 0.0).unwrap();

@@ -17,9 +17,8 @@ use gearmesh::gear::finite_elements::mesh::{Edge, Sizing};
 use gearmesh::gear::finite_elements::root_stress::{SurfaceStress, gauges, largest};
 use gearmesh::gear::geometry::Side;
 use gearmesh::gear::material::Plane;
+use gearmesh::gear::mesh::{Mesh, Settings};
 use gearmesh::gear::modification::Design;
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::load_case::LoadCase;
 
 const TORQUE: f64 = 28.0;
 
@@ -86,9 +85,9 @@ fn compare(plane: Plane, across: u32, positions: &[(usize, f64)], bar: f64) {
     let method = FiniteElement { plane, elements_across: across };
     let assumptions = Assumptions { contact: ContactLaw::LoadDependent, ..Assumptions::default() };
     let (tabulated, roots) = method.tabulate_with_roots(&pair, assumptions).unwrap();
-    let cycle = MeshCycle::new(&pair, &tabulated.compliance, Settings::default()).unwrap().with_roots(&roots);
+    let cycle = Mesh::new(&pair, &tabulated.compliance, Settings::default()).unwrap().with_roots(&roots);
     let design = Design::default();
-    let loading = LoadCase::new(&cycle, &design, TORQUE);
+    let loading = cycle.loaded(&design, TORQUE);
     for &(zone, part) in positions {
         let zone = cycle.zones[zone];
         let position = zone.start + part * (zone.end - zone.start);
@@ -132,8 +131,8 @@ fn pressed(path: &[f64], approach: f64, edge: f64) -> Option<[f64; 2]> {
     let method = FiniteElement { plane: Plane::Strain, elements_across: 24 };
     let assumptions = Assumptions { contact: ContactLaw::Resolved, ..Assumptions::default() };
     let (tabulated, roots) = method.tabulate_with_roots(&pair, assumptions).unwrap();
-    let cycle = MeshCycle::new(&pair, &tabulated.compliance, Settings::default()).unwrap().with_roots(&roots);
-    let loading = LoadCase::new(&cycle, &design, theirs.torques[0]);
+    let cycle = Mesh::new(&pair, &tabulated.compliance, Settings::default()).unwrap().with_roots(&roots);
+    let loading = cycle.loaded(&design, theirs.torques[0]);
     let position = path[0] - pair.start_of_contact;
     let state = loading.state(position, path.len());
     let ours = loading.root_stress(position, path.len(), &state).unwrap();

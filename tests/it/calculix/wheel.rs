@@ -4,7 +4,7 @@
 
 use std::fmt::Write;
 
-use gearmesh::gear::finite_elements::mesh::{Edge, Mesh};
+use gearmesh::gear::finite_elements::mesh::{Edge, ElementMesh};
 
 /// Where a sector is in the whole.
 pub struct Sector {
@@ -23,14 +23,14 @@ pub struct Wheel {
 }
 
 /// Nodes of the radial edges, outwards from the bore: left, right.
-fn edges(mesh: &Mesh) -> [Vec<usize>; 2] {
+fn edges(mesh: &ElementMesh) -> [Vec<usize>; 2] {
     let [left, right] = [mesh.bore[0], mesh.bore[mesh.bore.len() - 1]];
     [[&[left], &mesh.left[..]].concat(), [&[right], &mesh.right[..]].concat()]
 }
 
 impl Wheel {
     /// One mesh for each tooth, all with like edges.
-    pub fn new(meshes: &[&Mesh]) -> Self {
+    pub fn new(meshes: &[&ElementMesh]) -> Self {
         let mut wheel = Self { nodes: Vec::new(), elements: Vec::new(), sectors: Vec::new(), bore: Vec::new() };
         for (sector, mesh) in meshes.iter().enumerate() {
             let mut known = vec![None; mesh.nodes.len()];

@@ -9,22 +9,21 @@ use gearmesh::gear::compliance::finite_element::FiniteElement;
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method};
 use gearmesh::gear::geometry::{GearPair, Side, Specification};
 use gearmesh::gear::material::Plane;
+use gearmesh::gear::mesh::{Mesh, Settings};
 use gearmesh::gear::modification::Design;
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::numeric::crossing::bracketed;
 
 /// What the mesh of this fineness is off by.
 const MESH: f64 = 2e-3;
 
 /// The force \[N\] under which our pair approaches so far at a path position, and what of the approach is in doubt there.
-fn ours(cycle: &MeshCycle, pair: &GearPair, s: f64, approach: f64) -> [f64; 3] {
+fn ours(cycle: &Mesh, pair: &GearPair, s: f64, approach: f64) -> [f64; 3] {
     let design = Design::default();
     let position = s - pair.start_of_contact;
-    let at = |torque: f64| LoadCase::new(cycle, &design, torque).state(position, 1);
+    let at = |torque: f64| cycle.loaded(&design, torque).state(position, 1);
     let torque = bracketed(0.1, 1e4, |torque| at(torque).transmission_error() - approach).unwrap();
-    let loading = LoadCase::new(cycle, &design, torque);
-    let doubt = loading.contact_doubt_at(position, 1).unwrap();
+    let loading = cycle.loaded(&design, torque);
+    let doubt = loading.contact_law_error_at(position, 1).unwrap();
     [torque / pair.pinion.base_radius, doubt.size / doubt.approach, doubt.widest[0]]
 }
 
@@ -35,7 +34,7 @@ fn off(pair: &GearPair, plane: Plane, s: f64, approach: f64) -> Option<[f64; 2]>
     let assumptions = Assumptions { contact: ContactLaw::Resolved, ..Assumptions::default() };
     let method = FiniteElement { plane, elements_across: 28 };
     let compliance = method.tabulate(pair, assumptions).unwrap().compliance;
-    let cycle = MeshCycle::new(pair, &compliance, Settings::default()).unwrap();
+    let cycle = Mesh::new(pair, &compliance, Settings::default()).unwrap();
     let (part, level) = (27.5e-6 / approach, 6);
     let path = [s];
     let case = Case {

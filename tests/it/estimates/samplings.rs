@@ -3,9 +3,8 @@
 
 use super::random::{Case, Random};
 use gearmesh::gear::contact::{CornerContact, SliceCoupling};
-use gearmesh::gear::transmission_error::cycle::Settings;
-use gearmesh::gear::transmission_error::load_case::LoadCase;
-use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
+use gearmesh::gear::mesh::Settings;
+use gearmesh::gear::mesh::answers::sampling::{Against, Sampled};
 
 /// Below this an error is not that of sampling: the floor of the estimates.
 const FLOOR: f64 = 1e-10;
@@ -14,11 +13,11 @@ const TRUTH: Settings =
     Settings { positions: 192, slices: 257, corner_contact: CornerContact::None, slice_coupling: SliceCoupling::None };
 
 fn peak_to_peak(case: &Case, settings: Settings) -> f64 {
-    LoadCase::new(&case.cycle.sampled(settings), &case.design, case.torque).peak_to_peak()
+    case.cycle.sampled(settings).loaded(&case.design, case.torque).peak_to_peak()
 }
 
 fn variance(case: &Case, settings: Settings) -> f64 {
-    LoadCase::new(&case.cycle.sampled(settings), &case.design, case.torque).variance()
+    case.cycle.sampled(settings).loaded(&case.design, case.torque).variance()
 }
 
 /// Estimates over true errors.

@@ -12,12 +12,11 @@ use gearmesh::gear::compliance::weber_banaschek::WeberBanaschek;
 use gearmesh::gear::contact::CornerContact;
 use gearmesh::gear::geometry::root::RootShape;
 use gearmesh::gear::geometry::{GearPair, Specification};
+use gearmesh::gear::mesh::answers::curve::Wanted;
+use gearmesh::gear::mesh::answers::stiffness::stiffness;
+use gearmesh::gear::mesh::{Mesh, Settings};
 use gearmesh::gear::modification::Design;
 use gearmesh::gear::stability::{AXES, Case, Model, Rules, Verdict, check, sample};
-use gearmesh::gear::transmission_error::curve::Wanted;
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::load_case::LoadCase;
-use gearmesh::gear::transmission_error::stiffness::stiffness;
 
 /// What a specification must survive.
 const STRANGE: [f64; 16] = [
@@ -124,12 +123,12 @@ fn run(case: &Case, corner_contact: CornerContact) {
     let Ok(design) = case.design(&pair) else { return };
     let Ok(found) = case.model.method.tabulate(&pair, case.model.assumptions) else { return };
     let settings = Settings { corner_contact, ..case.model.settings };
-    let Ok(cycle) = MeshCycle::new(&pair, &found.compliance, settings) else { return };
+    let Ok(cycle) = Mesh::new(&pair, &found.compliance, settings) else { return };
     follow(&pair, &cycle, &design, case.torque);
 }
 
-fn follow(pair: &GearPair, cycle: &MeshCycle, design: &Design, torque: f64) {
-    let loading = LoadCase::new(cycle, design, torque);
+fn follow(pair: &GearPair, cycle: &Mesh, design: &Design, torque: f64) {
+    let loading = cycle.loaded(design, torque);
     let (points, summary) = loading.curve_and_summary(Wanted { harmonics: 4, pressure: true, ..Wanted::default() });
     assert!(
         summary.mean.is_finite() && summary.peak_to_peak.is_finite() && summary.variance.is_finite(),
@@ -138,7 +137,7 @@ fn follow(pair: &GearPair, cycle: &MeshCycle, design: &Design, torque: f64) {
     for point in &points {
         let sum: f64 = point.loads.iter().sum();
         assert!(point.loads.iter().all(|load| *load >= 0.0), "{point:?}");
-        assert!((sum / loading.force - 1.0).abs() < 1e-9, "{sum:e} for {:e}: {point:?}", loading.force);
+        assert!((sum / loading.force() - 1.0).abs() < 1e-9, "{sum:e} for {:e}: {point:?}", loading.force());
     }
     let lean = loading.peak_to_peak();
     assert!(lean >= 0.0 && loading.variance() >= 0.0);

@@ -33,15 +33,14 @@ mod tests {
     use crate::gear::compliance::ContactLaw;
     use crate::gear::contact::SliceCoupling;
     use crate::gear::fixtures::{NamedModification, coupled, design, pair, varying};
+    use crate::gear::mesh::answers::curve::{Summary, Wanted};
+    use crate::gear::mesh::{Mesh, Settings};
     use crate::gear::modification::Design;
-    use crate::gear::transmission_error::curve::{Summary, Wanted};
-    use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
-    use crate::gear::transmission_error::load_case::LoadCase;
     use declare::record::Value::{Choice, Quantity};
 
     const TORQUE: f64 = 50.0;
 
-    fn cycles() -> Vec<MeshCycle> {
+    fn cycles() -> Vec<Mesh> {
         let pair = pair();
         let plate = Settings { slice_coupling: SliceCoupling::Plate, ..Settings::default() };
         let load_dependent =
@@ -49,12 +48,12 @@ mod tests {
         [(varying(), Settings::default()), (coupled(), Settings::default()), (load_dependent, Settings::default())]
             .into_iter()
             .chain([(varying(), plate)])
-            .map(|(compliance, settings)| MeshCycle::new(&pair, &compliance, settings).unwrap())
+            .map(|(compliance, settings)| Mesh::new(&pair, &compliance, settings).unwrap())
             .collect()
     }
 
-    fn summary(cycle: &MeshCycle, design: &Design) -> Summary {
-        LoadCase::new(cycle, design, TORQUE).summary(Wanted { harmonics: 3, ..Wanted::default() })
+    fn summary(cycle: &Mesh, design: &Design) -> Summary {
+        cycle.loaded(design, TORQUE).summary(Wanted { harmonics: 3, ..Wanted::default() })
     }
 
     fn tilted(parts: &[NamedModification], tilt: f64) -> Design {

@@ -11,6 +11,7 @@ use crate::gear::compliance::{Assumptions, ContactLaw, Method};
 use crate::gear::geometry::root::RootShape;
 use crate::gear::geometry::{GearPair, Rack, Specification};
 use crate::gear::material::Material;
+use crate::gear::mesh::{Loaded, Mesh, Settings};
 use crate::gear::modification::curve::Curve;
 use crate::gear::modification::end_relief::{EndRelief, FaceEnd};
 use crate::gear::modification::helix_slope::HelixSlope;
@@ -18,8 +19,6 @@ use crate::gear::modification::lead_crowning::LeadCrowning;
 use crate::gear::modification::relief::{Amount, FromTip, Start};
 use crate::gear::modification::tip_relief::TipRelief;
 use crate::gear::modification::{Design, Gears};
-use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
-use crate::gear::transmission_error::load_case::LoadCase;
 
 /// Draws from ranges.
 pub(crate) struct Random(ChaCha8Rng);
@@ -143,7 +142,7 @@ impl Random {
             let coupled = self.share() < 0.2;
             let assumptions = Assumptions { root: RootShape::Trochoid, contact, coupled, torque: None, accuracy: None };
             if let Ok(found) = (Energy { harmonics: 10, ..Energy::default() }).tabulate(&pair, assumptions) {
-                let cycle = MeshCycle::new(&pair, &found.compliance, settings).unwrap();
+                let cycle = Mesh::new(&pair, &found.compliance, settings).unwrap();
                 let (design, torque) = (self.design(&pair), self.torque(&pair));
                 return Case { cycle, design, torque };
             }
@@ -153,13 +152,13 @@ impl Random {
 
 /// A design under a load.
 pub(crate) struct Case {
-    pub(crate) cycle: MeshCycle,
+    pub(crate) cycle: Mesh,
     pub(crate) design: Design,
     pub(crate) torque: f64,
 }
 
 impl Case {
-    pub(crate) fn load_case(&self) -> LoadCase<'_> {
-        LoadCase::new(&self.cycle, &self.design, self.torque)
+    pub(crate) fn load_case(&self) -> Loaded<'_> {
+        self.cycle.loaded(&self.design, self.torque)
     }
 }

@@ -13,9 +13,9 @@ use declare::parameter::Shape;
 use declare::record::{Record, Value};
 use declare::units::LENGTH;
 use gearmesh::gear::geometry::{GearPair, Side};
+use gearmesh::gear::mesh::answers::hunting::{PitchDeviations, Teeth, ToothFlanks};
 use gearmesh::gear::modification::measured::Measured;
 use gearmesh::gear::modification::{Design, Gears, Specified};
-use gearmesh::gear::transmission_error::hunting::{PitchDeviations, Teeth, ToothFlanks};
 
 /// The largest pitch deviation that is looked at \[m\]; beyond it nothing is small against a tooth.
 const MOST: f64 = 1e-3;

@@ -8,8 +8,8 @@ use super::passes::Found;
 use crate::stage::neglected_corners::{self, WithoutCorners};
 use crate::stage::{Context, Inputs};
 use declare::number::significant;
+use gearmesh::gear::mesh::Mesh;
 use gearmesh::gear::modification::template::Fitted;
-use gearmesh::gear::transmission_error::cycle::MeshCycle;
 
 /// Ends a warning of corner contact.
 const CHOICE: &str = "another design may be the best with corner contact; set `corner_contact: exact`";
@@ -17,12 +17,7 @@ const CHOICE: &str = "another design may be the best with corner contact; set `c
 impl Optimizer {
     /// Reports the error of the load case of the best design that loses most by `corner_contact: none`, and whether the design with the
     /// least value of every variable is better with corner contact: there reliefs keep corners apart least.
-    pub(super) fn warn_of_corners(
-        &self,
-        (context, inputs): (&Context, &Inputs),
-        found: &Found,
-        of: (&Fitted, &MeshCycle),
-    ) {
+    pub(super) fn warn_of_corners(&self, (context, inputs): (&Context, &Inputs), found: &Found, of: (&Fitted, &Mesh)) {
         if !context.is_heard {
             return;
         }
@@ -69,7 +64,7 @@ impl Optimizer {
     }
 
     /// Each load case of a design.
-    fn without_corners(&self, of: (&Fitted, &MeshCycle), point: &[f64]) -> Vec<Option<WithoutCorners<'_>>> {
+    fn without_corners(&self, of: (&Fitted, &Mesh), point: &[f64]) -> Vec<Option<WithoutCorners<'_>>> {
         let mut without = Vec::new();
         if let Ok(design) = of.0.design(point) {
             self.of_cases(of, &design, |loading, torque| {

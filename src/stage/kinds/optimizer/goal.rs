@@ -10,7 +10,7 @@ use declare::declared::Placed;
 use declare::error::Diagnostic;
 use declare::number::{significant, with_unit};
 use declare::units::in_unit;
-use gearmesh::gear::transmission_error::load_case::LoadCase;
+use gearmesh::gear::mesh::Loaded;
 use gearmesh::optimize::constraints::Evaluation;
 
 /// Objectives and constraints.
@@ -93,7 +93,7 @@ impl Goal {
     }
 
     /// All measures of one case, in SI; none where the design is beyond the model.
-    pub fn of_case(&self, loading: &LoadCase) -> Option<Vec<f64>> {
+    pub fn of_case(&self, loading: &Loaded) -> Option<Vec<f64>> {
         // The two that searches are mostly after, by a path of their own.
         if let [only] = &self.measures[..] {
             if only.is("peak_to_peak") {
@@ -103,7 +103,7 @@ impl Goal {
                 return Some(vec![loading.variance()]);
             }
         }
-        let settings = loading.cycle.settings;
+        let settings = loading.mesh().settings;
         self.asked.of(loading, (settings, 0), |_| f64::NAN).ok()
     }
 

@@ -16,8 +16,8 @@ use super::{EVALUATIONS, Optimizer};
 use crate::stage::Context;
 use declare::error::Failure;
 use declare::number::significant;
+use gearmesh::gear::mesh::{Mesh, Settings};
 use gearmesh::gear::modification::template::Fitted;
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::optimize::Foreseen;
 use gearmesh::optimize::constraints::{Evaluation, KEPT};
 use gearmesh::optimize::leaders::Leaders;
@@ -91,7 +91,7 @@ impl Seen {
 pub struct Run<'a> {
     optimizer: &'a Optimizer,
     context: &'a Context<'a>,
-    base: &'a MeshCycle,
+    base: &'a Mesh,
     fitted: &'a Fitted<'a>,
     /// The most evaluations of all passes.
     budget: f64,
@@ -124,7 +124,7 @@ impl<'a> Run<'a> {
     pub fn new(
         optimizer: &'a Optimizer,
         context: &'a Context<'a>,
-        (base, fitted): (&'a MeshCycle, &'a Fitted<'a>),
+        (base, fitted): (&'a Mesh, &'a Fitted<'a>),
     ) -> Result<Self, Failure> {
         let bounds = optimizer.bounds().map_err(|wrong| Failure::new(wrong.message))?;
         Ok(Self {
@@ -302,7 +302,7 @@ impl<'a> Run<'a> {
         Ok(reason)
     }
 
-    fn evaluate(&mut self, cycle: &MeshCycle, points: &[Vec<f64>]) -> Result<Vec<Evaluation>, Failure> {
+    fn evaluate(&mut self, cycle: &Mesh, points: &[Vec<f64>]) -> Result<Vec<Evaluation>, Failure> {
         self.context.check_stop()?;
         let (optimizer, fitted) = (self.optimizer, self.fitted);
         let worths: Vec<Worth> = points.par_iter().map(|point| optimizer.worth(cycle, fitted, point)).collect();

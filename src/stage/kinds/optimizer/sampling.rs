@@ -5,9 +5,9 @@
 
 use super::Optimizer;
 use gearmesh::gear::contact::SliceCoupling;
+use gearmesh::gear::mesh::answers::sampling::{Against, Sampled};
+use gearmesh::gear::mesh::{Mesh, Settings};
 use gearmesh::gear::modification::template::Fitted;
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
 
 /// Places on the diagonal of the box that stand for all of it.
 const PROBES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
@@ -18,7 +18,7 @@ const FEWEST_SLICES: usize = 5;
 
 impl Optimizer {
     /// The settings to begin with.
-    pub fn first_settings(&self, base: &MeshCycle, fitted: &Fitted) -> Settings {
+    pub fn first_settings(&self, base: &Mesh, fitted: &Fitted) -> Settings {
         let Some(accuracy) = self.stated.accuracy else { return self.settings };
         let variables = self.template.variables();
         let at = |share: &f64| -> Vec<f64> {
@@ -29,19 +29,19 @@ impl Optimizer {
     }
 
     /// The coarsest settings that meet an accuracy at one design.
-    pub fn settings_for(&self, base: &MeshCycle, fitted: &Fitted, point: &[f64], accuracy: f64) -> Settings {
+    pub fn settings_for(&self, base: &Mesh, fitted: &Fitted, point: &[f64], accuracy: f64) -> Settings {
         self.at(base, fitted, point, |mut sampled| sampled.coarsest(self.settings, accuracy)).unwrap_or(self.settings)
     }
 
     /// Estimated relative error of the objective at one design.
-    pub fn error(&self, base: &MeshCycle, fitted: &Fitted, point: &[f64], settings: Settings) -> f64 {
+    pub fn error(&self, base: &Mesh, fitted: &Fitted, point: &[f64], settings: Settings) -> f64 {
         self.at(base, fitted, point, |mut sampled| sampled.error(settings)).unwrap_or(1.0)
     }
 
     /// None where the design cannot be built.
     fn at<T>(
         &self,
-        base: &MeshCycle,
+        base: &Mesh,
         fitted: &Fitted,
         point: &[f64],
         look: impl FnOnce(Sampled<&mut dyn FnMut(Settings) -> f64>) -> T,

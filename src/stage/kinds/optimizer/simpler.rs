@@ -6,14 +6,14 @@ use super::Optimizer;
 use super::passes::Found;
 use crate::stage::{Context, simpler};
 use declare::number::significant;
+use gearmesh::gear::mesh::Mesh;
+use gearmesh::gear::mesh::answers::needs::Needs;
 use gearmesh::gear::modification::template::Fitted;
-use gearmesh::gear::transmission_error::cycle::MeshCycle;
-use gearmesh::gear::transmission_error::needs::Needs;
 
 impl Optimizer {
     /// Says that long relief is as good as what was found, within what counts as a gain, where that has more parts or more
     /// that was left open.
-    pub fn tell_if_simpler_does(&self, context: &Context, found: &Found, (fitted, cycle): (&Fitted, &MeshCycle)) {
+    pub fn tell_if_simpler_does(&self, context: &Context, found: &Found, (fitted, cycle): (&Fitted, &Mesh)) {
         if self.goal.has_front() || !self.is_staged() || self.template.variables().len() < 2 {
             return;
         }
@@ -28,7 +28,7 @@ impl Optimizer {
     }
 
     /// The largest one of all cases.
-    fn deflection(&self, found: &Found, fitted: &Fitted, cycle: &MeshCycle) -> Option<f64> {
+    fn deflection(&self, found: &Found, fitted: &Fitted, cycle: &Mesh) -> Option<f64> {
         let design = fitted.design(&found.best.point).ok()?;
         let deflections =
             self.of_cases((fitted, cycle), &design, |loading, _| loading.summary_of(Needs::default()).largest.value);
@@ -36,7 +36,7 @@ impl Optimizer {
     }
 
     /// The objective; none where the relief does not fit or a constraint is broken.
-    fn with_long_relief(&self, fitted: &Fitted, cycle: &MeshCycle, amount: f64) -> Option<f64> {
+    fn with_long_relief(&self, fitted: &Fitted, cycle: &Mesh, amount: f64) -> Option<f64> {
         let design = simpler::long_relief(amount, fitted.pair()).ok()?;
         let worth = self.goal.worth(&self.cases, &self.measured(cycle, fitted, &design)?);
         let is_kept = worth.evaluation.value.is_finite() && worth.evaluation.violation() == 0.0;

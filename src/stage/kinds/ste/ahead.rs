@@ -8,7 +8,7 @@ use super::tables::{cost, curve, harmonics, summary};
 use super::{MOST_AT_ONCE, Ste, samples};
 use crate::stage::{Ahead, Demand, Estimate, RowCount, common, names, root_influences, simpler};
 use declare::work::Work;
-use gearmesh::gear::transmission_error::curve::Point;
+use gearmesh::gear::mesh::answers::curve::Point;
 use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES, ROOT_STRESSES};
 use gearmesh::numeric::complementarity::MOST_SPRINGS;
 

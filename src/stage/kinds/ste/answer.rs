@@ -9,12 +9,11 @@ use super::tables::Found;
 use super::{Named, Ste, pressures};
 use crate::stage::neglected_corners::Estimated;
 use declare::error::Failure;
-use gearmesh::gear::transmission_error::curve::{Summary, Wanted};
-use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::doubt::Doubt;
-use gearmesh::gear::transmission_error::load_case::LoadCase;
-use gearmesh::gear::transmission_error::pressure::Cornered;
-use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
+use gearmesh::gear::mesh::answers::contact_law_error::ContactLawError;
+use gearmesh::gear::mesh::answers::corner_stretches::CornerStretches;
+use gearmesh::gear::mesh::answers::curve::{Summary, Wanted};
+use gearmesh::gear::mesh::answers::sampling::{Against, Sampled};
+use gearmesh::gear::mesh::{Mesh, MeshedDesign, Settings};
 
 /// One design under one torque; its points are in the table `curve`.
 pub struct Answer {
@@ -23,9 +22,9 @@ pub struct Answer {
     pub error: f64,
     pub seconds: f64,
     /// Where sharp corners are in contact, if pressures were asked for.
-    pub cornered: Option<Cornered>,
-    /// As [`LoadCase::contact_doubt`] has it.
-    pub doubt: Option<Doubt>,
+    pub cornered: Option<CornerStretches>,
+    /// As [`Loaded::contact_doubt`] has it.
+    pub doubt: Option<ContactLawError>,
     /// Tip corners that `corner_contact: none` leaves out, where a warning is heard.
     pub left_out: Option<Estimated>,
     /// What friction takes, if that was asked for.
@@ -47,17 +46,17 @@ pub struct WantedHere {
     pub corners: bool,
 }
 
-/// What was loaded last.
-pub type Before<'a> = Option<(&'a Named, LoadCase<'a>)>;
+/// The last design.
+pub type Before<'a> = Option<(&'a Named, MeshedDesign<'a>)>;
 
 impl Ste {
-    /// `before` is left as this load case.
+    /// `before` keeps the gaps of this design for its other torques.
     ///
     /// # Errors
     /// When the gears approach by more than is modelled.
     pub fn answer<'a>(
         &'a self,
-        base: &'a MeshCycle,
+        base: &'a Mesh,
         named: &'a Named,
         torque: f64,
         before: &mut Before<'a>,
@@ -66,12 +65,11 @@ impl Ste {
     ) -> Result<(Answer, Found), Failure> {
         let began = Instant::now();
         let (design, name, _) = named;
-        // Gaps do not ask for the torque.
-        let loading = match before.take() {
-            Some((other, loading)) if std::ptr::eq(other, named) => loading.with_torque(torque),
-            _ => self.loading(base, design, torque),
-        };
-        *before = Some((named, loading.clone()));
+        if before.as_ref().is_none_or(|(other, _)| !std::ptr::eq(*other, named)) {
+            *before = None;
+        }
+        let (_, meshed) = before.get_or_insert_with(|| (named, base.design(design)));
+        let loading = self.rubbed(meshed.under(torque));
         // Most samplings differ in their positions alone, and a cycle with other slices is a copy of all its tables.
         let differs = |settings: Settings| Settings { positions: base.settings.positions, ..settings } != base.settings;
         let mut sampled = Sampled::new(loading.uses_slices(), Against::Coarser, |settings| {
@@ -94,9 +92,9 @@ impl Ste {
             sampled.know(settings, summary.peak_to_peak);
         }
         let error = sampled.error(settings);
-        let doubt = loading.contact_doubt();
+        let doubt = loading.contact_law_error();
         let left_out = if wanted.corners { Estimated::of(&loading, &points, &summary) } else { None };
-        let cornered = loading.cornered(&points);
+        let cornered = loading.corner_stretches(&points);
         let lost = self.lost(&loading, wanted.loss);
         let each = |is_wanted: bool| points.iter().filter(move |_| is_wanted);
         let contacts = each(wanted.of_pairs)

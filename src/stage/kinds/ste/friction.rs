@@ -12,10 +12,10 @@ use declare::record::Record;
 use declare::units::ANGULAR_SPEED;
 use gearmesh::gear::contact::CornerContact;
 use gearmesh::gear::friction::{Law, Limit};
+use gearmesh::gear::mesh::answers::friction::{Loss, Place};
+use gearmesh::gear::mesh::cycle::flank_friction;
+use gearmesh::gear::mesh::{Loaded, Mesh};
 use gearmesh::gear::modification::Design;
-use gearmesh::gear::transmission_error::cycle::MeshCycle;
-use gearmesh::gear::transmission_error::friction::{self, Loss, Place};
-use gearmesh::gear::transmission_error::load_case::LoadCase;
 use rayon::prelude::*;
 use studygraph::table::columns::Columns;
 use studygraph::table::data::Table;
@@ -42,8 +42,8 @@ pub struct Friction {
 }
 
 impl Friction {
-    pub fn of(&self) -> friction::Friction<'_> {
-        friction::Friction { law: &*self.law, speed: self.speed }
+    pub fn of(&self) -> flank_friction::Friction<'_> {
+        flank_friction::Friction { law: &*self.law, speed: self.speed }
     }
 }
 
@@ -73,8 +73,12 @@ pub type Left = [f64; 2];
 
 impl Ste {
     /// A design under a torque, with friction in the balance where that is stated.
-    pub fn loading<'a>(&'a self, cycle: &'a MeshCycle, design: &'a Design, torque: f64) -> LoadCase<'a> {
-        let loading = LoadCase::new(cycle, design, torque);
+    pub fn loading<'a>(&'a self, cycle: &'a Mesh, design: &'a Design, torque: f64) -> Loaded<'a> {
+        self.rubbed(cycle.loaded(design, torque))
+    }
+
+    /// The same with friction in the balance where that is stated.
+    pub fn rubbed<'a>(&'a self, loading: Loaded<'a>) -> Loaded<'a> {
         match &self.friction {
             Some(friction) if friction.in_load_balance => loading.with_friction(friction.of()),
             _ => loading,
@@ -100,9 +104,9 @@ impl Ste {
     }
 
     /// What is lost over the cycle, where that is wanted, or where a warning may be due.
-    pub fn lost(&self, loading: &LoadCase, wanted: bool) -> Option<Lost> {
+    pub fn lost(&self, loading: &Loaded, wanted: bool) -> Option<Lost> {
         let friction = self.friction.as_ref().filter(|friction| wanted || friction.in_load_balance)?;
-        let geometric = loading.cycle.pair.tooth_loss_factor().unwrap_or(f64::NAN);
+        let geometric = loading.mesh().pair.tooth_loss_factor().unwrap_or(f64::NAN);
         Some(Lost { loss: loading.friction_loss(friction.of()), geometric })
     }
 
@@ -110,7 +114,7 @@ impl Ste {
     pub fn along_path(
         &self,
         context: &Context,
-        base: &MeshCycle,
+        base: &Mesh,
         tasks: &[(&Named, f64)],
     ) -> Result<Option<Table>, Failure> {
         let Some(of) = self.friction.as_ref().filter(|_| context.demand.table(TABLE)) else { return Ok(None) };

@@ -5,11 +5,11 @@
 use super::tables::{Keyed, Load, PointRow, keyed};
 use crate::stage::names::{curve, summary};
 use crate::stage::{Context, Demand};
-use gearmesh::gear::transmission_error::cycle::MeshCycle;
-use gearmesh::gear::transmission_error::face_map::Cell;
-use gearmesh::gear::transmission_error::load_case::LoadCase;
-use gearmesh::gear::transmission_error::pressure::{Cornered, LineContact};
-use gearmesh::gear::transmission_error::quantities::{Need, QUANTITIES};
+use gearmesh::gear::mesh::answers::corner_stretches::CornerStretches;
+use gearmesh::gear::mesh::answers::face_map::Cell;
+use gearmesh::gear::mesh::answers::pressure::LineContact;
+use gearmesh::gear::mesh::answers::quantities::{Need, QUANTITIES};
+use gearmesh::gear::mesh::{Loaded, Mesh};
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
 use studygraph::warning::{Cases, Warning};
@@ -104,9 +104,9 @@ pub fn of_curve(columns: Columns<PointRow<'_>>) -> Columns<PointRow<'_>> {
 }
 
 /// The contacts at a position of a curve.
-pub fn contacts(loading: &LoadCase, position: f64, pairs: usize) -> Contacts {
+pub fn contacts(loading: &Loaded, position: f64, pairs: usize) -> Contacts {
     let by_spring = loading.contacts(position, pairs, &loading.state(position, pairs));
-    let newest = loading.cycle.newest().cast_signed();
+    let newest = loading.mesh().newest().cast_signed();
     PAIRS.each_ref().map(|pair| {
         let spring = usize::try_from(newest + pair.ahead).ok();
         spring.and_then(|spring| by_spring.get(spring)).copied().unwrap_or_default()
@@ -145,7 +145,7 @@ pub fn map<'a>(stated: &[usize]) -> Columns<CellRow<'a>> {
 
 /// Says of which designs under which torques a sharp corner is in contact: how much of the load it has and where, and whether
 /// it is the largest pressure.
-pub fn warn(context: &Context, cycle: &MeshCycle, answers: &[Keyed]) {
+pub fn warn(context: &Context, cycle: &Mesh, answers: &[Keyed]) {
     let what = if cycle.knows_corners() {
         "the contact reaches the sharp corner of a tip, where the pressure is infinite; the pressures there are those of a \
          contact that just reaches it"
@@ -154,7 +154,7 @@ pub fn warn(context: &Context, cycle: &MeshCycle, answers: &[Keyed]) {
          pressures there are those of the flank beside it"
     };
     for (design, Load { torque, .. }, answer) in answers {
-        let Some(Cornered { share, stretches }) = &answer.cornered else { continue };
+        let Some(CornerStretches { share, stretches }) = &answer.cornered else { continue };
         let is_largest = answer.summary.largest_pressure.is_some_and(|largest| largest.contact.at_corner);
         let largest = if is_largest { ", the largest of the curve among them" } else { "" };
         let stretches: Vec<String> =

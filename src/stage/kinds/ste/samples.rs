@@ -4,7 +4,7 @@
 //! ones. Must not know: how a position is solved.
 
 use super::tables::{Keyed, keyed};
-use gearmesh::gear::transmission_error::load_case::LoadCase;
+use gearmesh::gear::mesh::Loaded;
 use studygraph::table::columns::Columns;
 
 pub const TABLE: &str = "samples";
@@ -65,8 +65,8 @@ pub fn summary<'a>(stated: &[usize]) -> Columns<Keyed<'a, Samples>> {
 
 /// The samples of a curve, and what they amount to; `first` is the pinion's rotation from where
 /// a pair starts contact \[rad\].
-pub fn taken(loading: &LoadCase, first: f64, count: usize) -> (Vec<Sample>, Samples) {
-    let cycle = loading.cycle;
+pub fn taken(loading: &Loaded, first: f64, count: usize) -> (Vec<Sample>, Samples) {
+    let cycle = loading.mesh();
     let teeth = f64::from(cycle.pair.pinion.specification.teeth);
     let sample = |index: usize| {
         let share = (first * teeth / std::f64::consts::TAU + index as f64 / count as f64).rem_euclid(1.0);

@@ -13,7 +13,7 @@ use crate::stage::{Context, simpler};
 use declare::error::Failure;
 use declare::number::significant;
 use gearmesh::gear::geometry::GearPair;
-use gearmesh::gear::transmission_error::cycle::MeshCycle;
+use gearmesh::gear::mesh::Mesh;
 use studygraph::warning::{Cases, Warning};
 
 impl Ste {
@@ -21,7 +21,7 @@ impl Ste {
     pub fn tell_if_simpler_does(
         &self,
         context: &Context,
-        (pair, cycle): (&GearPair, &MeshCycle),
+        (pair, cycle): (&GearPair, &Mesh),
         (answers, simple): (&[Keyed], &BTreeSet<String>),
     ) -> Result<(), Failure> {
         let Some(within) = self.simpler_within else { return Ok(()) };
@@ -49,7 +49,7 @@ impl Ste {
     }
 
     /// The peak-to-peak, the largest of all deviations; none where the relief does not fit.
-    fn with_long_relief(&self, amount: f64, (pair, cycle): (&GearPair, &MeshCycle), torque: f64) -> Option<f64> {
+    fn with_long_relief(&self, amount: f64, (pair, cycle): (&GearPair, &Mesh), torque: f64) -> Option<f64> {
         let design = simpler::long_relief(amount, pair).ok()?;
         self.deviations.combinations().iter().try_fold(0.0_f64, |largest, deviation| {
             let off = deviation.on(&design, pair).ok()?;

@@ -9,9 +9,9 @@ use super::pressures::Contacts;
 use crate::stage::cases::{DEVIATIONS, Deviation};
 use crate::stage::names;
 use gearmesh::gear::geometry::Side;
-use gearmesh::gear::transmission_error::curve::Point;
-use gearmesh::gear::transmission_error::doubt::Doubt;
-use gearmesh::gear::transmission_error::quantities::{Need, QUANTITIES, Quantity};
+use gearmesh::gear::mesh::answers::contact_law_error::ContactLawError;
+use gearmesh::gear::mesh::answers::curve::Point;
+use gearmesh::gear::mesh::answers::quantities::{Need, QUANTITIES, Quantity};
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
 
@@ -71,7 +71,7 @@ pub fn summary<'a>(stated: &[usize], rubs: bool) -> Columns<Keyed<'a>> {
 fn of_doubt(columns: Columns<Keyed<'_>>) -> Columns<Keyed<'_>> {
     let size = "What the law of contact may be off by in the transmission error; NaN where it knows no width.";
     let position = "Distance from where a pair starts contact, where that is most.";
-    let of = |get: fn(&Doubt) -> f64| move |row: &Keyed| row.2.doubt.as_ref().map_or(f64::NAN, get);
+    let of = |get: fn(&ContactLawError) -> f64| move |row: &Keyed| row.2.doubt.as_ref().map_or(f64::NAN, get);
     columns
         .float("contact_doubt", "um", size, of(|doubt| doubt.size))
         .but(|column| column.on_demand().allows_nan().tolerance(1e-9, 1e-6))

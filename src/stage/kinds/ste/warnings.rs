@@ -4,11 +4,10 @@
 
 use super::tables::{Keyed, Load};
 use super::{Named, Ste};
-use crate::stage::doubts::Doubted;
+use crate::stage::contact_law_error::ReportedContactLawError;
 use crate::stage::neglected_corners::{self, REMEDY, WithoutCorners};
 use crate::stage::{Context, Inputs};
-use gearmesh::gear::transmission_error::cycle::MeshCycle;
-use gearmesh::gear::transmission_error::load_case::LoadCase;
+use gearmesh::gear::mesh::Mesh;
 use studygraph::warning::{Cases, Warning};
 
 /// Of the module: an approach beyond it is told, since nothing here is linear any more. The article `mei2016` goes to 0.18.
@@ -57,7 +56,12 @@ impl Ste {
                 _ => (),
             }
             let peak_to_peak = answer.summary.peak_to_peak;
-            let doubted = answer.doubt.map(|doubt| Doubted { design: name, torque: *torque, doubt, peak_to_peak });
+            let doubted = answer.doubt.map(|doubt| ReportedContactLawError {
+                design: name,
+                torque: *torque,
+                doubt,
+                peak_to_peak,
+            });
             if let Some(case) = doubted.and_then(|doubted| doubted.told()) {
                 (context.warn)(Warning::Cases(case.with_each("`summary.contact_doubt`")));
             }
@@ -68,7 +72,7 @@ impl Ste {
     pub fn warn_of_corners(
         &self,
         (context, inputs): (&Context, &Inputs),
-        base: &MeshCycle,
+        base: &Mesh,
         answers: &[Keyed],
         tasks: &[(&Named, f64)],
     ) {
@@ -101,14 +105,14 @@ impl Ste {
             // Friction at a corner is not modelled: both curves are without.
             let (without, remedy) = if self.is_resisted() {
                 let cycle = base.sampled(settings);
-                let loading = LoadCase::new(&cycle, design, torque);
+                let loading = cycle.loaded(design, torque);
                 let without = WithoutCorners::of(answers[index].0, torque, &loading)?;
                 (WithoutCorners { deviations: &deviations[index], ..without }, REMEDY_OF_FRICTION)
             } else {
                 (without[index]?, REMEDY)
             };
             let cycle = neglected_corners::cycle(inputs, settings)?;
-            let (size, sentence) = without.error(&LoadCase::new(&cycle, design, torque), remedy)?;
+            let (size, sentence) = without.error(&cycle.loaded(design, torque), remedy)?;
             Some((size, without.warning(size, &sentence)))
         });
         if let Some((_, warning)) = found.reduce(|worst, other| if other.0 > worst.0 { other } else { worst }) {

@@ -209,8 +209,8 @@ mod tests {
     use crate::gear::geometry::root::RootShape;
     use crate::gear::geometry::{Rack, Specification};
     use crate::gear::material::Material;
-    use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
-    use crate::gear::transmission_error::stiffness::stiffness as mesh_stiffness;
+    use crate::gear::mesh::answers::stiffness::stiffness as mesh_stiffness;
+    use crate::gear::mesh::{Mesh, Settings};
 
     const STEEL: Material = Material::STEEL;
 
@@ -278,7 +278,7 @@ mod tests {
             let expected = stiffness(&Inputs::of(&pair, &Iso6336::default()));
             let Tabulated { compliance, warnings, .. } = tables(&pair, None);
             assert!(warnings.is_empty() && compliance.contact.is_none(), "{warnings:?}");
-            let cycle = MeshCycle::new(&pair, &compliance, Settings::default()).unwrap();
+            let cycle = Mesh::new(&pair, &compliance, Settings::default()).unwrap();
             for torque in [1e-6, 50.0, 1e6] {
                 let (_, summary) = mesh_stiffness(&cycle, torque);
                 let near = |value: f64, exact: f64| (value / (exact * 18e-3) - 1.0).abs() < 1e-9;

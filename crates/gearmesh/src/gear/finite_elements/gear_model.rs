@@ -8,7 +8,7 @@
 
 use super::MeshError;
 use super::element::{Elasticity, edge_shape, elasticity};
-use super::mesh::{Edge, Mesh, Sizing};
+use super::mesh::{Edge, ElementMesh, Sizing};
 use super::outline::Outline;
 use super::point_load::{Block, HalfPlane, Taken};
 use super::root_stress::{self, Gauge, SurfaceStress};
@@ -32,7 +32,7 @@ pub struct GearModel<'a> {
     /// Height at which the involute begins \[modules\].
     form: f64,
     /// One tooth with its share of the body.
-    pub mesh: Mesh,
+    pub mesh: ElementMesh,
     /// The stiffness of that mesh, factorised.
     pub sector: Sector,
 }
@@ -75,7 +75,7 @@ impl<'a> GearModel<'a> {
         if ratio > maximum {
             return Err(MeshError::Rounding { ratio: Plain(ratio), maximum: Plain(maximum) });
         }
-        let mesh = Mesh::new(&outline, sizing)?;
+        let mesh = ElementMesh::new(&outline, sizing)?;
         let elasticity = elasticity(plane, gear.specification.material.poisson_ratio);
         let sector = Sector::new(&mesh, &elasticity)?;
         let form = gear.flank(root.form_roll).height / gear.specification.module * (1.0 + 1e-9);
@@ -160,7 +160,7 @@ impl<'a> GearModel<'a> {
     /// # Errors
     /// As [`Self::rests`].
     pub fn rests_of(&self, loads: &[FlankLoad], neighbours: u32) -> Result<Influences, MeshError> {
-        let Mesh { nodes, elements, .. } = &self.mesh;
+        let ElementMesh { nodes, elements, .. } = &self.mesh;
         let most = loads.iter().map(|load| load.rows).max().unwrap_or(0);
         // No element is folded over: they were factorised.
         let block =
@@ -280,7 +280,7 @@ impl GearModel<'_> {
     /// # Errors
     /// As [`Self::stress_influences`].
     pub fn stress_influences_of(&self, places: &[FlankLoad], neighbours: u32) -> Result<StressInfluences, MeshError> {
-        let Mesh { nodes, elements, root, flank, .. } = &self.mesh;
+        let ElementMesh { nodes, elements, root, flank, .. } = &self.mesh;
         let block = Block::new(nodes, elements, &self.mesh.tooth(0), &self.elasticity).ok_or(MeshError::Singular)?;
         let loads: Vec<NodalForces> =
             places.iter().map(|load| self.taken(&block, load.roll, load.inclination).forces).collect();
@@ -323,7 +323,7 @@ impl GearModel<'_> {
 }
 
 /// The edge that contains a height, and the place s on it; an end where the height lies beyond.
-fn find<'a>(mesh: &Mesh, edges: &'a [Edge], height: f64) -> (&'a Edge, f64) {
+fn find<'a>(mesh: &ElementMesh, edges: &'a [Edge], height: f64) -> (&'a Edge, f64) {
     let above = edges.partition_point(|edge| mesh.nodes[edge.nodes[2]][1] < height).min(edges.len() - 1);
     let edge = &edges[above];
     let [start, middle, end] = edge.nodes.map(|node| mesh.nodes[node][1]);

@@ -136,17 +136,17 @@ impl Sizing {
 /// An element's edge on a boundary: the element, which of its edges, and its nodes (start, middle, end).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
-    /// Its place in [`Mesh::elements`].
+    /// Its place in [`ElementMesh::elements`].
     pub element: usize,
     /// Which edge of the unit square it is, counterclockwise: 0 at η = −1, 1 at ξ = 1, 2 at η = 1, 3 at ξ = −1.
     pub side: usize,
-    /// Their places in [`Mesh::nodes`], in the direction in which the boundary runs.
+    /// Their places in [`ElementMesh::nodes`], in the direction in which the boundary runs.
     pub nodes: [usize; 3],
 }
 
 /// A meshed sector.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mesh {
+pub struct ElementMesh {
     /// \[modules\], in the tooth's frame.
     pub nodes: Vec<[f64; 2]>,
     /// The nodes of each element: its corners counterclockwise, then the middles of its edges in the same order.
@@ -163,7 +163,7 @@ pub struct Mesh {
     pub root: Vec<Edge>,
     /// The tooth's centreline, outwards.
     pub centreline: Vec<Edge>,
-    /// Where the elements of the tooth begin in [`Mesh::elements`], from the cut upwards; before them are those of the body,
+    /// Where the elements of the tooth begin in [`ElementMesh::elements`], from the cut upwards; before them are those of the body,
     /// row by row from the bore, each row from the left edge to the right one.
     pub first_of_tooth: usize,
     /// Elements in a row of the body, and how many of them lie beside the tooth at its left.
@@ -195,7 +195,7 @@ impl Grid {
     }
 }
 
-impl Mesh {
+impl ElementMesh {
     /// # Errors
     /// When an element is folded over.
     pub fn new(outline: &Outline, sizing: &Sizing) -> Result<Self, MeshError> {

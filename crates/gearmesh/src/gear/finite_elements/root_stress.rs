@@ -5,7 +5,7 @@
 //! International Journal for Numerical Methods in Engineering 10 (1976) 243–251).
 //! Stresses times the module over the load per width. Must not know: strength.
 
-use super::mesh::{Edge, Mesh};
+use super::mesh::{Edge, ElementMesh};
 use super::sector::NodalForces;
 use crate::gear::material::Plane;
 use crate::numeric::parabola::peak;
@@ -66,7 +66,7 @@ pub struct SurfaceStress {
 
 /// Gauges at two points of each of a chain of edges.
 #[must_use]
-pub fn gauges(mesh: &Mesh, edges: &[Edge], plane: Plane, poisson_ratio: f64) -> Vec<Gauge> {
+pub fn gauges(mesh: &ElementMesh, edges: &[Edge], plane: Plane, poisson_ratio: f64) -> Vec<Gauge> {
     let modulus = match plane {
         Plane::Strain => 1.0 / (1.0 - poisson_ratio * poisson_ratio),
         Plane::Stress => 1.0,
@@ -107,7 +107,7 @@ pub fn gauges(mesh: &Mesh, edges: &[Edge], plane: Plane, poisson_ratio: f64) -> 
 /// The stress at two points of each of a chain of edges that carry no load, from the displacements of all nodes.
 #[must_use]
 pub fn along_surface(
-    mesh: &Mesh,
+    mesh: &ElementMesh,
     edges: &[Edge],
     displacements: &[[f64; 2]],
     plane: Plane,

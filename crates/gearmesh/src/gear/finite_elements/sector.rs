@@ -7,7 +7,7 @@ use cholesky::{CholeskyError, Entries, Factor, Order};
 
 use super::MeshError;
 use super::element::{Elasticity, FREEDOMS, stiffness};
-use super::mesh::Mesh;
+use super::mesh::ElementMesh;
 
 /// Columns solved for at a time.
 const BLOCK: usize = 32;
@@ -53,11 +53,11 @@ pub struct Response {
 impl Sector {
     /// # Errors
     /// When an element is folded over, or the stiffness is not positive definite to rounding.
-    pub fn new(mesh: &Mesh, elasticity: &Elasticity) -> Result<Self, MeshError> {
+    pub fn new(mesh: &ElementMesh, elasticity: &Elasticity) -> Result<Self, MeshError> {
         Self::factorised(mesh, elasticity, Order::Blocks)
     }
 
-    pub(super) fn factorised(mesh: &Mesh, elasticity: &Elasticity, order: Order) -> Result<Self, MeshError> {
+    pub(super) fn factorised(mesh: &ElementMesh, elasticity: &Elasticity, order: Order) -> Result<Self, MeshError> {
         let (freedoms, inside) = number(mesh);
         let edge = 2 * mesh.left.len();
         let (sine, cosine) = libm::sincos(mesh.half_pitch);
@@ -194,7 +194,7 @@ impl Sector {
     }
 }
 
-fn number(mesh: &Mesh) -> (Vec<[Freedom; 2]>, usize) {
+fn number(mesh: &ElementMesh) -> (Vec<[Freedom; 2]>, usize) {
     let mut freedoms = vec![[Freedom::Inside(0); 2]; mesh.nodes.len()];
     for (place, &node) in mesh.left.iter().chain(&mesh.right).enumerate() {
         freedoms[node] = [Freedom::Edge(2 * place), Freedom::Edge(2 * place + 1)];

@@ -111,6 +111,43 @@ pub struct Specification {
 }
 
 impl Specification {
+    /// z teeth of module m \[m\] with α of 20°, x of 0, the basic rack ISO 53 A and teeth of steel. Face width and bore are still
+    /// to be given; without a face width no pair is made of it.
+    #[must_use]
+    pub fn spur(teeth: u32, module: f64) -> Self {
+        Self {
+            teeth,
+            module,
+            pressure_angle: 20_f64.to_radians(),
+            profile_shift: 0.0,
+            thickness_allowance: 0.0,
+            rack: Rack::ISO_53_A,
+            cutter: None,
+            tip_radius: None,
+            face_width: 0.0,
+            bore_radius: 0.0,
+            material: Material::STEEL,
+        }
+    }
+
+    /// The same with the face width b \[m\].
+    #[must_use]
+    pub fn face_width(self, face_width: f64) -> Self {
+        Self { face_width, ..self }
+    }
+
+    /// The same with this radius of the bore \[m\].
+    #[must_use]
+    pub fn bore_radius(self, bore_radius: f64) -> Self {
+        Self { bore_radius, ..self }
+    }
+
+    /// The same with the profile shift coefficient x.
+    #[must_use]
+    pub fn profile_shift(self, profile_shift: f64) -> Self {
+        Self { profile_shift, ..self }
+    }
+
     /// s_pr \[m\]: how far the protuberance of its rack reaches beyond the finished flank, normal to it; 0 where it does not, and of a
     /// gear that a cutter shapes.
     #[must_use]

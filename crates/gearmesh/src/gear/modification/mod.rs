@@ -314,6 +314,16 @@ impl Design {
         self.tilt == 0.0 && self.pinion.iter().chain(&self.gear).all(|part| part.modification.lead_is_even())
     }
 
+    /// One modification of one gear or both.
+    ///
+    /// # Errors
+    /// As [`Design::add`].
+    pub fn of<T: Specified>(gears: Gears, stated: &T, pair: &GearPair) -> Result<Self, Diagnostic> {
+        let mut design = Self::default();
+        design.add(gears, stated, pair)?;
+        Ok(design)
+    }
+
     /// Adds a modification to one gear or both.
     ///
     /// # Errors

@@ -32,6 +32,18 @@ pub struct TipRelief {
 }
 
 impl TipRelief {
+    /// A depth C_αa \[m\] at the tip that grows from its start as this curve does; a length or a fraction counts from the tip.
+    #[must_use]
+    pub fn new(amount: f64, start: Start, curve: Curve) -> Self {
+        Self { amount: Amount::Depth(amount), start, counted_from: FromTip::Tip, curve }
+    }
+
+    /// The same with a linear growth.
+    #[must_use]
+    pub fn linear(amount: f64, start: Start) -> Self {
+        Self::new(amount, start, Curve::Linear)
+    }
+
     fn stated(&self) -> Stated<'_> {
         let (start, origin, curve) = (self.start, self.counted_from.origin(), self.curve);
         Stated { amount: &self.amount, start, origin, curve, end: End::Tip }

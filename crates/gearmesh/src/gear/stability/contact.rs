@@ -8,8 +8,8 @@ use crate::gear::compliance::ContactLaw;
 use crate::gear::contact::CornerContact;
 use crate::gear::contact::flattening::{Bodies, InSeries, Logarithmic, combined_radius};
 use crate::gear::contact::gap::Gaps;
-use crate::gear::transmission_error::curve::Wanted;
-use crate::gear::transmission_error::load_case::{Equilibrium, LoadCase};
+use crate::gear::mesh::answers::curve::Wanted;
+use crate::gear::mesh::{Equilibrium, Loaded};
 use crate::numeric::complementarity::MOST_SPRINGS;
 
 /// The places in a zone that are checked.
@@ -98,7 +98,7 @@ fn pairs(built: &Built, position: f64, count: usize) -> Pairs<'_> {
 /// Mean and peak-to-peak transmission error, and a finding for each invariant; or, where flanks approach by more than
 /// what is modelled, why there is none.
 pub(super) fn check(case: &Case, built: &Built, findings: &mut Vec<Finding>) -> Result<[f64; 2], String> {
-    let loading = LoadCase::new(&built.cycle, &built.design, case.torque);
+    let loading = built.cycle.loaded(&built.design, case.torque);
     let (points, summary) = loading.curve_and_summary(Wanted { harmonics: 3, pressure: true, ..Wanted::default() });
     loading.check_approach(summary.largest.value).map_err(|beyond| beyond.to_string())?;
     let numbers = points.iter().flat_map(|point| {
@@ -121,7 +121,7 @@ pub(super) fn check(case: &Case, built: &Built, findings: &mut Vec<Finding>) -> 
     let (mut growth, mut softening) = (0.0_f64, 0.0_f64);
     let mut jump = (0.0_f64, 1.0_f64);
     let mut residual = Some((0.0_f64, ROUNDING));
-    let ladder = [1.0, 2.0].map(|factor| LoadCase::new(&built.cycle, &built.design, case.torque * factor));
+    let ladder = [1.0, 2.0].map(|factor| built.cycle.loaded(&built.design, case.torque * factor));
     for zone in &built.cycle.zones {
         for share in SHARES {
             let position = zone.start + share * (zone.end - zone.start);
@@ -129,15 +129,15 @@ pub(super) fn check(case: &Case, built: &Built, findings: &mut Vec<Finding>) -> 
             let springs = built.cycle.springs(zone.pairs);
             let loads = &state.balance.loads[..springs];
             let sum: f64 = loads.iter().sum();
-            imbalance = imbalance.max((sum / loading.force - 1.0).abs());
-            negative = loads.iter().fold(negative, |worst, load| worst.max(-load / loading.force));
+            imbalance = imbalance.max((sum / loading.force() - 1.0).abs());
+            negative = loads.iter().fold(negative, |worst, load| worst.max(-load / loading.force()));
             let pairs = pairs(built, position, springs);
             condition = condition.max(pairs.condition(loads, built.cycle.face_width));
             residual = residual.and_then(|worst| {
                 let of_slices = loading.unexplained_by_slices(position, zone.pairs);
                 let (value, limit) = match of_slices {
                     Some([value, scale]) => (value, ROUNDING + (ROUNDING + TABLE) * scale),
-                    None => pairs.residual(case, built, &state, loading.force)?,
+                    None => pairs.residual(case, built, &state, loading.force())?,
                 };
                 Some(if value * worst.1 >= worst.0 * limit { (value, limit) } else { worst })
             });
@@ -178,7 +178,7 @@ pub(super) fn check(case: &Case, built: &Built, findings: &mut Vec<Finding>) -> 
 
 /// With corner contact pairs come and go off the line of action: nothing jumps where a zone ends and the next begins,
 /// including the first after the last. What remains are quick copies, and reliefs over the rounding of a path position.
-fn across_zones(case: &Case, built: &Built, loading: &LoadCase) -> Finding {
+fn across_zones(case: &Case, built: &Built, loading: &Loaded) -> Finding {
     let zones = &built.cycle.zones;
     let ramps = 2.0 * case.relief / case.relief_length.max(f64::MIN_POSITIVE);
     let rounding = ROUNDINGS * f64::EPSILON * built.pair.tangent_length;

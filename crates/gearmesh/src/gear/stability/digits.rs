@@ -6,7 +6,6 @@ use super::precise::{GEOMETRIC, NAMES, Quantities};
 use super::{Built, Case, DigitsLost, Finding, MOST_LOST, Report};
 use crate::gear::geometry::Side;
 use crate::gear::modification::Design;
-use crate::gear::transmission_error::load_case::LoadCase;
 use crate::numeric::double_double::Double;
 
 /// The place of the stiffness where one pair more than the fewest is in contact.
@@ -29,11 +28,11 @@ pub fn lost(value: f64, exact: Double) -> f64 {
 fn quantities(case: &Case, built: &Built, values: [f64; 2]) -> Quantities<f64> {
     let Built { pair, compliance, cycle, .. } = built;
     let unmodified = Design::default();
-    let loading = LoadCase::new(cycle, &unmodified, case.torque);
+    let loading = cycle.loaded(&unmodified, case.torque);
     let stiffness = |zone: usize| {
         let zone = cycle.zones[zone];
         let state = loading.state(0.5 * (zone.start + zone.end), zone.pairs);
-        loading.force / state.balance.approach
+        loading.force() / state.balance.approach
     };
     let pinion = pair.side(Side::Pinion);
     [

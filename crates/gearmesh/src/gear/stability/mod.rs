@@ -26,12 +26,12 @@ use super::compliance::{Assumptions, ContactLaw, Method, PairCompliance};
 use super::contact::{CornerContact, SliceCoupling};
 use super::geometry::outline::tip::Tip;
 use super::geometry::{GearPair, Specification};
+use super::mesh::{Mesh, Settings};
 use super::modification::curve::Curve;
 use super::modification::lead_crowning::LeadCrowning;
 use super::modification::relief::{Amount, FromTip, Start};
 use super::modification::tip_relief::TipRelief;
 use super::modification::{Design, Gears};
-use super::transmission_error::cycle::{MeshCycle, Settings};
 use crate::numeric::double_double::Double;
 use precise::Rule;
 
@@ -170,7 +170,7 @@ pub(crate) struct Built {
     pub pair: GearPair,
     pub design: Design,
     pub compliance: PairCompliance,
-    pub cycle: MeshCycle,
+    pub cycle: Mesh,
 }
 
 /// Why a case is impossible: which step refuses it.
@@ -210,7 +210,7 @@ impl Case {
         let Model { method, assumptions, settings } = &self.model;
         let tabulated = method.tabulate(&pair, *assumptions);
         let compliance = tabulated.map_err(|error| ("compliance", error.to_string()))?.compliance;
-        let cycle = MeshCycle::new(&pair, &compliance, *settings).map_err(|error| ("mesh cycle", error.to_string()))?;
+        let cycle = Mesh::new(&pair, &compliance, *settings).map_err(|error| ("mesh cycle", error.to_string()))?;
         Ok(Built { pair, design, compliance, cycle })
     }
 

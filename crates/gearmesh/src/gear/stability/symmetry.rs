@@ -4,8 +4,7 @@
 //! wrote into the code. With the gears swapped the same contact runs backwards. Must not know: the second evaluation.
 
 use super::{Case, Finding, MOST_LOST};
-use crate::gear::transmission_error::curve::Wanted;
-use crate::gear::transmission_error::load_case::LoadCase;
+use crate::gear::mesh::answers::curve::Wanted;
 
 /// 2¹⁰ and 2⁵ either way: the first that leaves every length in its range.
 const SCALES: [f64; 4] = [1.0 / 1024.0, 1024.0, 0.03125, 32.0];
@@ -13,7 +12,7 @@ const SCALES: [f64; 4] = [1.0 / 1024.0, 1024.0, 0.03125, 32.0];
 /// Mean and peak-to-peak.
 pub(super) fn values(case: &Case) -> Result<[f64; 2], String> {
     let built = case.build().map_err(|(_, reason)| reason)?;
-    let summary = LoadCase::new(&built.cycle, &built.design, case.torque).summary(Wanted::default());
+    let summary = built.cycle.loaded(&built.design, case.torque).summary(Wanted::default());
     Ok([summary.mean, summary.peak_to_peak])
 }
 

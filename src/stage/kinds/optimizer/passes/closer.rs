@@ -5,7 +5,7 @@
 use super::{AT_ONCE, Found, Pass, Run, Seen};
 use declare::error::Failure;
 use declare::number::significant;
-use gearmesh::gear::transmission_error::cycle::Settings;
+use gearmesh::gear::mesh::Settings;
 use gearmesh::optimize;
 use gearmesh::optimize::constraints::Evaluation;
 use gearmesh::optimize::leaders::Leader;

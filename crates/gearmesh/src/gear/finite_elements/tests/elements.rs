@@ -1,7 +1,7 @@
 //! Patch test, rigid bodies, and a thick ring against Lamé's closed form: displacement and stress.
 
 use super::super::element::{NODES, RULE, edge_shape, elasticity, shape, stiffness, stress};
-use super::super::mesh::{Edge, Mesh};
+use super::super::mesh::{Edge, ElementMesh};
 use super::super::root_stress::{SurfaceStress, along_surface, largest};
 use super::super::sector::{NodalForces, Sector};
 use super::super::wheel::Wheel;
@@ -103,7 +103,7 @@ fn a_patch_reproduces_uniform_strain() {
 }
 
 /// A sector of a ring from 1 to 2, `count` elements deep and across.
-fn ring(sectors: u32, count: usize) -> Mesh {
+fn ring(sectors: u32, count: usize) -> ElementMesh {
     let half_pitch = std::f64::consts::PI / f64::from(sectors);
     let (columns, mut nodes, mut numbers) = (2 * count + 1, Vec::new(), Vec::new());
     for row in 0..columns {
@@ -133,7 +133,7 @@ fn ring(sectors: u32, count: usize) -> Mesh {
         }
     }
     let edge = |column: usize| (1..columns).map(|row| at(column, row)).collect();
-    Mesh {
+    ElementMesh {
         bore: (0..columns).map(|column| at(column, 0)).collect(),
         left: edge(0),
         right: edge(columns - 1),

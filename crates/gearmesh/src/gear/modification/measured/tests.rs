@@ -10,15 +10,14 @@ use crate::gear::contact::gap::Gaps;
 use crate::gear::contact::separation::Facing;
 use crate::gear::contact::{CornerContact, SliceCoupling};
 use crate::gear::fixtures::{coupled, inclined, pair, varying};
+use crate::gear::mesh::answers::curve::{Point, Wanted};
+use crate::gear::mesh::{Mesh, Settings};
 use crate::gear::modification::curve::Curve;
 use crate::gear::modification::lead_crowning::LeadCrowning;
 use crate::gear::modification::profile_crowning::ProfileCrowning;
 use crate::gear::modification::relief::{Amount, FromTip, Start};
 use crate::gear::modification::tip_relief::TipRelief;
 use crate::gear::modification::{Design, Gears};
-use crate::gear::transmission_error::curve::{Point, Wanted};
-use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
-use crate::gear::transmission_error::load_case::LoadCase;
 use proptest::prelude::*;
 
 const SIDES: [(Gears, Side); 2] = [(Gears::Pinion, Side::Pinion), (Gears::Gear, Side::Gear)];
@@ -78,14 +77,14 @@ fn crowned(pair: &GearPair) -> Design {
 
 /// By how much the transmission error of one design differs from that of another at the other's own points, over the peak-to-peak of
 /// the other, or by how much that does.
-fn off(cycle: &MeshCycle, designs: [&Design; 2], torque: f64) -> f64 {
-    let [one, other] = designs.map(|design| LoadCase::new(cycle, design, torque).peak_to_peak());
+fn off(cycle: &Mesh, designs: [&Design; 2], torque: f64) -> f64 {
+    let [one, other] = designs.map(|design| cycle.loaded(design, torque).peak_to_peak());
     worst(cycle, designs, torque).max((one - other).abs()) / other
 }
 
 /// By how much it differs at the most \[m\].
-fn worst(cycle: &MeshCycle, designs: [&Design; 2], torque: f64) -> f64 {
-    let [one, other] = designs.map(|design| LoadCase::new(cycle, design, torque));
+fn worst(cycle: &Mesh, designs: [&Design; 2], torque: f64) -> f64 {
+    let [one, other] = designs.map(|design| cycle.loaded(design, torque));
     let at = |point: &Point| {
         let [one, other] = [&one, &other].map(|loading| loading.state(point.cycle_position, point.pairs));
         (one.transmission_error() - other.transmission_error()).abs()
@@ -110,7 +109,7 @@ proptest! {
         amount in 6e-6..25e-6_f64, length in 2.5e-3..6e-3_f64, torque in 60.0..400.0_f64
     ) {
         let (pair, compliance) = (pair(), varying());
-        let cycle = MeshCycle::new(&pair, &compliance, Settings::default()).unwrap();
+        let cycle = Mesh::new(&pair, &compliance, Settings::default()).unwrap();
         let smooth = relieved(&pair, amount, length, SMOOTH);
         let off = [500, 8001].map(|count| off(&cycle, [&traced(&pair, &smooth, count), &smooth], torque));
         prop_assert!(off[1] <= 1e-6 && off[0] <= 2e-4, "{off:?}");
@@ -146,7 +145,7 @@ fn a_trace_of_crowning_is_crowning_to_every_solver() {
                 (CornerContact::None, SliceCoupling::Plate, 7),
             ] {
                 let settings = Settings { positions: 16, slices, corner_contact, slice_coupling };
-                let cycle = MeshCycle::new(&pair, &compliance, settings).unwrap();
+                let cycle = Mesh::new(&pair, &compliance, settings).unwrap();
                 for designs in [[&trace, &plain], [&uneven_trace, &uneven]] {
                     let off = off(&cycle, designs, 150.0);
                     assert!(off < 1e-7, "{settings:?} {contact:?}: {off:e}");
@@ -160,13 +159,13 @@ fn a_trace_of_crowning_is_crowning_to_every_solver() {
 #[test]
 fn a_constant_deviation_shifts_the_transmission_error() {
     let (pair, compliance) = (pair(), varying());
-    let cycle = MeshCycle::new(&pair, &compliance, Settings::default()).unwrap();
+    let cycle = Mesh::new(&pair, &compliance, Settings::default()).unwrap();
     let [low, high] = [0.0, 3e-6].map(|more| {
         let mut design = relieved(&pair, 12e-6, 4e-3, SMOOTH);
         design.add(Gears::Pinion, &profile(&pair, Side::Pinion, 40, |_| more), &pair).unwrap();
         design
     });
-    let [low, high] = [&low, &high].map(|design| LoadCase::new(&cycle, design, 150.0));
+    let [low, high] = [&low, &high].map(|design| cycle.loaded(design, 150.0));
     for point in low.curve(Wanted::default()) {
         let [low, high] =
             [&low, &high].map(|loading| loading.state(point.cycle_position, point.pairs).transmission_error());
@@ -238,7 +237,7 @@ fn a_trace_across_the_face_is_sliced() {
     design.add(Gears::Gear, &lead(&pair, Side::Gear, 90, |z| -6e-6 * (z / half) * (z / half)), &pair).unwrap();
     for (slices, within) in [(17, 2e-3), (257, 2e-5)] {
         let settings = Settings { slices, ..Settings::default() };
-        let cycle = MeshCycle::new(&pair, &compliance, settings).unwrap();
+        let cycle = Mesh::new(&pair, &compliance, settings).unwrap();
         let off = off(&cycle, [&design, &plain], 150.0);
         assert!(off < within, "{slices}: {off:e}");
     }
@@ -267,7 +266,7 @@ fn a_grid_of_a_sum_is_the_sum_of_both_traces() {
     grid.add(Gears::Gear, &stated, &pair).unwrap();
     for corner_contact in [CornerContact::None, CornerContact::Exact] {
         let settings = Settings { positions: 16, corner_contact, ..Settings::default() };
-        let cycle = MeshCycle::new(&pair, &compliance, settings).unwrap();
+        let cycle = Mesh::new(&pair, &compliance, settings).unwrap();
         let off = off(&cycle, [&grid, &sum], 150.0);
         assert!(off < 1e-7, "{corner_contact:?}: {off:e}");
     }

@@ -12,7 +12,7 @@ use crate::numeric::double_double::Double;
 /// gaps do; how far gaps are off over what both reliefs take, the kernels' search and its copies.
 fn exact_residual(case: &Case) -> ([f64; 2], [f64; 2]) {
     let built = case.build().unwrap();
-    let loading = LoadCase::new(&built.cycle, &built.design, case.torque);
+    let loading = built.cycle.loaded(&built.design, case.torque);
     let gaps = Gaps::new(&built.pair, &built.design.profiles(0.0));
     let (mut found, mut off) = ([0.0_f64; 2], [0.0_f64; 2]);
     for zone in &built.cycle.zones {
@@ -35,8 +35,8 @@ fn exact_residual(case: &Case) -> ([f64; 2], [f64; 2]) {
                 let unexplained = penetration / pairs.compliance[j][j] - load;
                 let wrong = [gaps.at(*s), loading.gap(*s)].map(|gap| (Double::from(gap.unwrap()) - exact[j]).high);
                 let of_copy = (unexplained - wrong[1] / pairs.compliance[j][j]).high.abs();
-                found[0] = found[0].max(unexplained.high.abs() / loading.force);
-                found[1] = found[1].max(of_copy / loading.force);
+                found[0] = found[0].max(unexplained.high.abs() / loading.force());
+                found[1] = found[1].max(of_copy / loading.force());
                 for (off, wrong) in off.iter_mut().zip(wrong) {
                     *off = off.max(wrong.abs() / (2.0 * case.relief));
                 }

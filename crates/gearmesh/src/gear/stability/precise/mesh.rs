@@ -18,7 +18,7 @@ const HALVINGS: usize = 44;
 const SHORTEST_ZONE: f64 = 1e-9;
 
 /// The pair on its path of contact.
-pub(super) struct Mesh<'a> {
+pub(super) struct PreciseMesh<'a> {
     inputs: &'a Inputs,
     pub centre_distance: Double,
     tangent_length: Double,
@@ -125,7 +125,7 @@ struct SolvedPosition {
     spots: Vec<Spot>,
 }
 
-impl<'a> Mesh<'a> {
+impl<'a> PreciseMesh<'a> {
     pub(super) fn new(inputs: &'a Inputs, teeth: &[Tooth; 2]) -> Self {
         let (sine, cosine) = inputs.pressure_angle.sine_cosine();
         let tangent = sine / cosine;

@@ -16,7 +16,7 @@ use crate::numeric::double_double::Double;
 use flanks::TipRelief;
 #[cfg(test)]
 pub(super) use gaps::exact_gap;
-use mesh::Mesh;
+use mesh::PreciseMesh;
 pub use rules::Rule;
 use tooth::Tooth;
 
@@ -113,7 +113,7 @@ pub const GEOMETRIC: usize = 7;
 /// Everything at once.
 pub fn evaluate(inputs: &Inputs, rule: &Rule) -> Quantities<Double> {
     let mut teeth = [Side::Pinion, Side::Gear].map(|side| Tooth::new(inputs, side));
-    let mesh = Mesh::new(inputs, &teeth);
+    let mesh = PreciseMesh::new(inputs, &teeth);
     let pinion = &teeth[0];
     let geometry = [
         pinion.form_radius,

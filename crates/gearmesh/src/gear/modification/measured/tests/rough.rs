@@ -1,12 +1,12 @@
 //! Positions too few to follow the crests of rough flanks, against thousands.
 
 use super::*;
-use crate::gear::transmission_error::curve::Summary;
+use crate::gear::mesh::answers::curve::Summary;
 
 fn summary(pair: &GearPair, positions: usize, design: &Design) -> Summary {
     let settings = Settings { positions, ..Settings::default() };
-    let cycle = MeshCycle::new(pair, &varying(), settings).unwrap();
-    LoadCase::new(&cycle, design, 50.0).curve_and_summary(Wanted::default()).1
+    let cycle = Mesh::new(pair, &varying(), settings).unwrap();
+    cycle.loaded(design, 50.0).curve_and_summary(Wanted::default()).1
 }
 
 /// Tier: second method; places where pairs take up load are not looked for between 64 positions, fewer than 24 to a crest: the mean is that of 8,192

@@ -20,7 +20,7 @@ fn finite_elements_take_a_trace() {
     let trace = traced(&pair, &plain, 500);
     for corner_contact in [CornerContact::None, CornerContact::Exact] {
         let settings = Settings { positions: 8, corner_contact, ..Settings::default() };
-        let cycle = MeshCycle::new(&pair, &compliance, settings).unwrap();
+        let cycle = Mesh::new(&pair, &compliance, settings).unwrap();
         let off = off(&cycle, [&trace, &plain], 150.0);
         assert!(off < 1e-7, "{corner_contact:?}: {off:e}");
     }
@@ -37,7 +37,7 @@ fn member(gears: Gears, family: &impl Registrable) -> PlacedValue {
 #[test]
 fn a_search_varies_a_relief_beside_a_trace() {
     let (pair, compliance) = (pair(), varying());
-    let cycle = MeshCycle::new(&pair, &compliance, Settings::default()).unwrap();
+    let cycle = Mesh::new(&pair, &compliance, Settings::default()).unwrap();
     let plain = crowned(&pair);
     let mut open = member(Gears::Both, &relief(1e-6, 4e-3, SMOOTH));
     let Value::Member(_, record) = &mut open.value else { unreachable!("a member") };
@@ -56,7 +56,7 @@ fn a_search_varies_a_relief_beside_a_trace() {
     for amount in [0.0, 4e-6, 11e-6, 23e-6] {
         let [one, other] = [&by_trace, &by_crowning].map(|template| {
             let design = template.on(&pair).design(&[amount]).unwrap();
-            LoadCase::new(&cycle, &design, 150.0).peak_to_peak()
+            cycle.loaded(&design, 150.0).peak_to_peak()
         });
         assert!((one - other).abs() < 1e-7 * other, "{amount}: {one:e} {other:e}");
     }
