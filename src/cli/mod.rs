@@ -216,10 +216,7 @@ fn run_studies(command: &Command, places: &Places, quiet: bool) -> Result<(), En
     }
     let (explain, keep_going, json) = (*explain, *keep_going, output.is_json());
     let how = run::How { explain, keep_going, jobs, limits: *limits, quiet, json };
-    if studies::settings(changes).is_empty()
-        && (run::is_up_to_date(studies, places, selection, &how)?
-            || run::run_changed(studies, places, selection, &how)?)
-    {
+    if studies::settings(changes).is_empty() && run::is_up_to_date(studies, places, selection, &how)? {
         return Ok(());
     }
     run::run(&load_all(studies, changes)?, places, selection, &how)

@@ -24,7 +24,7 @@ use crate::stage::Want;
 use declare::error::Diagnostic;
 use studygraph::presence;
 use studygraph::runner::events::Observer;
-use studygraph::runner::execute::{self, RunError, Surroundings};
+use studygraph::runner::execute::{self, RunError};
 use studygraph::runner::fault::Fault;
 use studygraph::runner::limits::{Limits, MOST_ROWS};
 use studygraph::runner::note::{self, Where};
@@ -32,7 +32,6 @@ use studygraph::runner::options::{Force, Options, Wanted};
 use studygraph::runner::outcome::Outcome;
 use studygraph::runner::ownership;
 use studygraph::runner::plan::{self, Plan};
-use studygraph::runner::recall::{self, Part};
 use studygraph::store::cache::Cache;
 use studygraph::store::error::StoreError;
 use studygraph::store::manifest::Manifest;
@@ -150,27 +149,6 @@ fn nothing_to_do(study: &str, stages: usize, folder: &Folder) -> String {
     format!("{study}: nothing to do, {} up to date; {}\n", count(stages), pages::path(folder).display())
 }
 
-/// Runs what changed of a study since a run of which a note says that all its files are as it left them; false where all of it
-/// is to be read.
-///
-/// # Errors
-/// As a run of all of it.
-pub(super) fn run_changed(
-    files: &[PathBuf],
-    places: &Places,
-    selection: &Selection,
-    how: &How,
-) -> Result<bool, Ending> {
-    let ([file], false, false) = (files, how.explain, how.json) else { return Ok(false) };
-    let options = options(selection, how)?;
-    let study = &studies::file(file)?;
-    let at = Where { study, results: &places.results, cache: &places.cache };
-    let Some(part) = recall::part(&at, &PROGRAM, &options) else { return Ok(false) };
-    let bars = progress::bars(how.is_silent());
-    let stop = stop_flag(bars.clone());
-    run_stages(&part.study, Some(&part), places, selection, how, bars.as_ref(), &stop)
-}
-
 pub(super) fn run_one(
     study: &Study,
     places: &Places,
@@ -179,19 +157,6 @@ pub(super) fn run_one(
     bars: Option<&MultiProgress>,
     stop: &AtomicBool,
 ) -> Result<(), Ending> {
-    run_stages(study, None, places, selection, how, bars, stop).map(drop)
-}
-
-/// Runs a study, or the part of it that was read; false where all of it must be read after all.
-fn run_stages(
-    study: &Study,
-    part: Option<&Part>,
-    places: &Places,
-    selection: &Selection,
-    how: &How,
-    bars: Option<&MultiProgress>,
-    stop: &AtomicBool,
-) -> Result<bool, Ending> {
     let cache = Cache::open_if_possible(&places.cache);
     let folder = Folder::new(&places.results, &study.name).telling(progress::told);
     let options = options(selection, how)?;
@@ -213,20 +178,13 @@ fn run_stages(
         verdicts.replace(Some(Counts::of(manifest, tables)));
         Ok(drawn)
     };
-    let run = || match part {
-        None => execute::run(study, &cache, &options, observer, stop, &folder, Some(&draw)).map(Some),
-        Some(part) => {
-            let (cache, folder) = (&cache, &folder);
-            execute::run_part(part, &options, Surroundings { cache, observer, stop, folder, draw: Some(&draw) })
-        }
-    };
-    let ended = watcher.telling(run).map_err(|error| match error {
+    let run = || execute::run(study, &cache, &options, observer, stop, &folder, Some(&draw));
+    let (outcome, published) = watcher.telling(run).map_err(|error| match error {
         RunError::Study(diagnostic) => unknown(&diagnostic),
         RunError::Beyond(diagnostic) => Ending::Invalid(Box::new(study.refused(*diagnostic))),
         RunError::Store(StoreError::Stopped { .. }) => Ending::Stopped,
         other => Ending::Usage(other.to_string()),
     })?;
-    let Some((outcome, published)) = ended else { return Ok(false) };
     for file in &published.changes.foreign {
         // Somebody else had changed it.
         let message = format!("`{file}` was not what the last run wrote; it is written anew");
@@ -251,7 +209,7 @@ fn run_stages(
         None if how.quiet => {}
         None => tell(&summed_up(study, &outcome, &folder, verdicts.as_ref())),
     }
-    Ok(true)
+    Ok(())
 }
 
 /// # Errors
@@ -274,7 +232,7 @@ fn succeeded(study: &Study, outcome: &Outcome) -> Result<(), Ending> {
 
 fn summed_up(study: &Study, outcome: &Outcome, folder: &Folder, verdicts: Option<&Counts>) -> String {
     let work = match (outcome.ran(), verdicts) {
-        (0, None) => return nothing_to_do(&study.name, outcome.stages.len() + study.unread.len(), folder),
+        (0, None) => return nothing_to_do(&study.name, outcome.stages.len(), folder),
         (0, Some(_)) => "nothing to compute, results brought up to date".to_owned(),
         (ran, _) => format!("{} ran in {}", count(ran), duration(outcome.seconds)),
     };

@@ -15,7 +15,7 @@ const MAY: &[(&str, usize, &str)] = &[
         2,
         "what cannot be read is taken for present, and read, which reports it",
     ),
-    ("crates/studygraph/src/runner/note.rs", 5, "without a note a run reads everything"),
+    ("crates/studygraph/src/runner/note.rs", 4, "without a note a run reads everything"),
     ("crates/studygraph/src/runner/ownership.rs", 1, "what is not recorded is not compared"),
     ("crates/studygraph/src/store/cache.rs", 2, "a use that is not noted makes an entry look older; leftovers stay"),
     ("crates/studygraph/src/store/cache/packs.rs", 1, "an entry that is not found is computed again"),

@@ -407,22 +407,18 @@ impl<'a> Board<'a> {
     #[must_use]
     pub fn next_journal(&self) -> Journal {
         let mut journal = Journal::default();
-        for stage in self.study.stages() {
-            let (name, state) = match stage {
-                Ok(node) => (&self.study.nodes[node].name, self.nodes[node].state),
-                Err(unread) => (&unread.name, StageState::Want),
-            };
-            let last = self.last.get(name).copied();
-            let keys = || stage.iter().flat_map(|&node| self.nodes[node].parts.iter()).map(|part| part.record.clone());
-            match (state, last) {
+        for (node, progress) in self.study.nodes.iter().zip(&self.nodes) {
+            let last = self.last.get(&node.name).copied();
+            let keys = || progress.parts.iter().map(|part| part.record.clone());
+            match (progress.state, last) {
                 (StageState::Hit | StageState::Done, _) => journal.add(&JournalStage {
-                    name: name.clone(),
+                    name: node.name.clone(),
                     keys: keys().collect(),
-                    whole: stage.ok().and_then(|node| self.nodes[node].whole),
+                    whole: progress.whole,
                     failed: Vec::new(),
                 }),
                 (StageState::Failed, last) => journal.add(&JournalStage {
-                    name: name.clone(),
+                    name: node.name.clone(),
                     failed: keys().map(|record| Failed(record.key)).collect(),
                     ..last.and_then(|last| self.journal.stage(last)).unwrap_or_default()
                 }),

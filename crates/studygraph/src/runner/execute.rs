@@ -4,7 +4,6 @@
 //! and the next one goes on from there. Failures are never kept. Tables stay in memory only while a stage that is not
 //! finished reads them. Order and number of threads enter no result. Must not know: how progress is drawn.
 
-use std::borrow::Cow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -20,7 +19,6 @@ use super::options::Options;
 use super::outcome::Outcome;
 use super::ownership;
 use super::plan;
-use super::recall::{Part, Recalled};
 use super::work::{Ended, Run, message};
 use crate::stage::memory;
 use crate::store::cache::Cache;
@@ -28,7 +26,7 @@ use crate::store::entry::StoredTable;
 use crate::store::error::StoreError;
 use crate::store::facts::Facts;
 use crate::store::manifest::{Manifest, StudyFolder};
-use crate::store::results::{self, Draw, Folder, Published, Source, Spliced};
+use crate::store::results::{Draw, Folder, Published, Source};
 use crate::study::Study;
 use crate::table::data::Table;
 use declare::error::Diagnostic;
@@ -47,17 +45,6 @@ pub enum RunError {
     Threads { threads: usize, problem: String },
 }
 
-/// Where a run keeps and publishes, and who hears of it.
-#[derive(Clone, Copy)]
-pub struct Surroundings<'a> {
-    pub cache: &'a Cache,
-    pub observer: &'a dyn Observer,
-    pub stop: &'a AtomicBool,
-    pub folder: &'a Folder,
-    /// Draws the report.
-    pub draw: Option<Draw<'a>>,
-}
-
 /// Runs a study and brings its results folder up to date; `draw` draws the report. What the outcome knew of keys, fields and tables
 /// is in the manifest.
 ///
@@ -72,11 +59,10 @@ pub fn run(
     folder: &Folder,
     draw: Option<Draw<'_>>,
 ) -> Result<(Outcome, Published), RunError> {
-    let around = Surroundings { cache, observer, stop, folder, draw };
     let moved = ownership::check(study, folder)?;
     let publish = |outcome: &mut Outcome| {
         let manifest = Manifest { study_folder: moved.clone().unwrap_or_default(), ..outcome.take_manifest(study) };
-        publishing(study, outcome, options, around, |facts, source| folder.publish(manifest, facts, source))
+        publish_outcome(manifest, (study, options), outcome, (cache, folder), observer, stop, draw)
     };
     for message in &study.warnings().collect::<Vec<_>>() {
         observer.event(&Event::Warning { message });
@@ -88,77 +74,28 @@ pub fn run(
         outcome = execute(study, cache, options, observer, stop)?;
         published = publish(&mut outcome);
     }
-    recall_warnings(&outcome, observer);
+    // A run of the same study says the same, whatever was computed.
+    for stage in outcome.stages.iter().filter(|stage| stage.ran == 0 && !stage.warnings.is_empty()) {
+        observer.event(&Event::Recalled { stage: &stage.name, warnings: &stage.warnings });
+    }
     for message in &warnings(cache, &outcome) {
         observer.event(&Event::Warning { message });
     }
     let published = published?;
-    let recalled = || Recalled::of(study, options).map(Cow::Owned);
-    note::keep(study, (cache, options, folder), (&outcome, &published), recalled, None);
+    note::keep(study, (cache, options, folder), (&outcome, &published));
     Ok((outcome, published))
 }
 
-/// The same for a study of which only some stages were read, with the options that it was chosen for; none where all of it
-/// must be read after all.
-///
-/// # Errors
-/// As [`run`].
-pub fn run_part(
-    part: &Part,
-    options: &Options,
-    around: Surroundings<'_>,
-) -> Result<Option<(Outcome, Published)>, RunError> {
-    let Surroundings { cache, observer, stop, folder, .. } = around;
-    ownership::check(&part.study, folder)?;
-    let mut outcome = execute(&part.study, cache, &part.options, observer, stop)?;
-    let manifest = outcome.take_manifest(&part.study);
-    let published = publishing(&part.study, &outcome, options, around, |facts, source| {
-        let of_part = results::Part {
-            manifest: manifest.clone(),
-            stages: part.stages(),
-            reader: part.study.program.pictures.reader,
-            is_as_before: &|| part.note.holds_in(folder.path()),
-        };
-        match folder.publish_part(of_part, facts, source)? {
-            Spliced::Published(published) => Ok(Some(*published)),
-            // Other tables, rows or words: all is written, of stages that were not read what is there.
-            Spliced::Refused(earlier) => {
-                let whole = earlier.and_then(|earlier| part.whole(manifest, *earlier));
-                whole.map(|whole| folder.publish(whole, facts, source)).transpose()
-            }
-        }
-    });
-    // What else there is to be said a run of all stages says, and makes good.
-    if let Err(StoreError::Damaged { .. } | StoreError::Format { .. }) | Ok(None) = published {
-        return Ok(None);
-    }
-    recall_warnings(&outcome, observer);
-    let is_read = |stage: &str| outcome.stages.iter().any(|read| read.name == stage);
-    part.note.tell_warnings_of(|stage| !is_read(stage), observer);
-    for message in &warnings(cache, &outcome) {
-        observer.event(&Event::Warning { message });
-    }
-    let Some(published) = published? else { return Ok(None) };
-    let recalled = || Some(Cow::Borrowed(part.recalled()));
-    note::keep(&part.study, (cache, options, folder), (&outcome, &published), recalled, Some(&part.note));
-    Ok(Some((outcome, published)))
-}
-
-/// Repeats the warnings of stages that were not computed, so that a run of the same study says the same.
-fn recall_warnings(outcome: &Outcome, observer: &dyn Observer) {
-    for stage in outcome.stages.iter().filter(|stage| stage.ran == 0 && !stage.warnings.is_empty()) {
-        observer.event(&Event::Recalled { stage: &stage.name, warnings: &stage.warnings });
-    }
-}
-
-/// Publishes by `publish`, which is given what the run has to say, and where tables come from.
-fn publishing<T>(
-    study: &Study,
+/// Brings the results folder up to date with what a run came to.
+fn publish_outcome(
+    manifest: Manifest,
+    (study, options): (&Study, &Options),
     outcome: &Outcome,
-    options: &Options,
-    Surroundings { cache, observer, stop, folder, draw }: Surroundings<'_>,
-    publish: impl FnOnce(&dyn Fn() -> Facts, Source<'_>) -> Result<T, StoreError>,
-) -> Result<T, StoreError> {
+    (cache, folder): (&Cache, &Folder),
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+    draw: Option<Draw<'_>>,
+) -> Result<Published, StoreError> {
     let facts = || {
         let study_folder = StudyFolder::of(&study.files()).unwrap_or_else(|problem| {
             let path = study.path.display();
@@ -197,7 +134,7 @@ fn publishing<T>(
         waits: &go_on,
         code: study.program.about.code,
     };
-    publish(&facts, source)
+    folder.publish(manifest, facts, source)
 }
 
 /// What the next run will miss.

@@ -34,8 +34,6 @@ pub struct Graph {
     /// Every node after all it reads; otherwise as in the study.
     pub order: Vec<usize>,
     pub inputs: Vec<Vec<Input>>,
-    /// The nodes that each may read from, whatever is asked of it; in the order of its ports.
-    pub reads: Vec<Vec<usize>>,
     /// The nodes that read from each node, ascending.
     pub readers: Vec<Vec<usize>>,
     /// Nodes of which no more is asked than of all that can give the same share it.
@@ -79,9 +77,7 @@ impl Graph {
             });
             inputs.push(resolved.collect::<Result<Vec<_>, Diagnostic>>().map_err(|error| error.or_at(node.place))?);
         }
-        let reads: Vec<Vec<usize>> =
-            inputs.iter().map(|of_node| of_node.iter().map(|input| input.node).collect()).collect();
-        let order = order(&reads).map_err(|members| cycle(study, &inputs, &members))?;
+        let order = order(&inputs).map_err(|members| cycle(study, &inputs, &members))?;
         let outputs = outputs(study);
         let demands = demand(&names, wanted, (&order, &ports, &outputs), &mut inputs)?;
         let mut readers = vec![Vec::new(); study.nodes.len()];
@@ -93,7 +89,7 @@ impl Graph {
             }
         }
         let (demanded, codes) = (demanded(&outputs, &demands), key::codes(study));
-        Ok(Self { order, inputs, reads, readers, demands, outputs, demanded, codes })
+        Ok(Self { order, inputs, readers, demands, outputs, demanded, codes })
     }
 
     /// Which nodes are needed for these.
@@ -226,11 +222,9 @@ fn demand(
         add(&mut demands[index], &study.nodes[index], &outputs[index], want)?;
     }
     let pictures = study.program.pictures;
-    let says = |kind: &str| kind == pictures.reader;
-    if !study.nodes.iter().any(|node| says(node.kind.name)) && !study.unread.iter().any(|stage| says(stage.kind)) {
+    if study.nodes.iter().all(|node| node.kind.name != pictures.reader) {
         let mut stages: HashMap<&str, usize> = HashMap::new();
-        let kinds = study.nodes.iter().map(|node| node.kind.name).chain(study.unread.iter().map(|stage| stage.kind));
-        kinds.for_each(|kind| *stages.entry(kind).or_default() += 1);
+        study.nodes.iter().for_each(|node| *stages.entry(node.kind.name).or_default() += 1);
         // Nobody looks at thousands of figures; drawing them took forty times what all else did.
         let drawn = study.nodes.iter().enumerate().filter(|(_, node)| stages[node.kind.name] <= MANY);
         for (index, node) in drawn {
@@ -303,12 +297,12 @@ fn add(demand: &mut Arc<Demand>, node: &Node, outputs: &[Schema], want: &Want) -
 ///
 /// # Errors
 /// The members of a circle.
-pub fn order(reads: &[Vec<usize>]) -> Result<Vec<usize>, Vec<usize>> {
+fn order(inputs: &[Vec<Input>]) -> Result<Vec<usize>, Vec<usize>> {
     let mut graph = DiGraph::<(), ()>::new();
-    let nodes: Vec<NodeIndex> = reads.iter().map(|_| graph.add_node(())).collect();
-    for (reader, of_reader) in reads.iter().enumerate() {
-        for &node in of_reader {
-            graph.update_edge(nodes[reader], nodes[node], ());
+    let nodes: Vec<NodeIndex> = inputs.iter().map(|_| graph.add_node(())).collect();
+    for (reader, of_reader) in inputs.iter().enumerate() {
+        for input in of_reader {
+            graph.update_edge(nodes[reader], nodes[input.node], ());
         }
     }
     let circular = |component: &Vec<NodeIndex>| component.len() > 1 || graph.contains_edge(component[0], component[0]);

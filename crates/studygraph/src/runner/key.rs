@@ -189,8 +189,7 @@ impl Parts<'_> {
 }
 
 /// The digest of what is asked of a stage.
-#[must_use]
-pub fn demand(demand: &Demand) -> Digest {
+fn demand(demand: &Demand) -> Digest {
     let mut writer = Writer::new("gearstudy 1 demand");
     writer.count(demand.tables.len());
     for (table, columns) in &demand.tables {

@@ -19,7 +19,6 @@ pub mod ownership;
 mod pieces;
 pub mod plan;
 pub mod reach;
-pub mod recall;
 pub mod refuse;
 pub mod rehearse;
 pub mod shard;

@@ -3,11 +3,8 @@
 //!
 //! Stamps are trusted as those of the index are (`store/index.rs`): not of another start of the machine, nor of the moment in
 //! which the note was written. It lies in the cache, one for each study's file and results folder; losing it costs time only.
-//! Beside it lies what need not be read again of a study whose text changed since (`recall.rs`). Must not know: how a run finds
-//! out that there is nothing to do.
+//! Must not know: how a run finds out that there is nothing to do.
 
-use std::borrow::Cow;
-use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -17,7 +14,6 @@ use serde::{Deserialize, Serialize};
 use super::events::{Event, Observer};
 use super::options::{Force, Options};
 use super::outcome::Outcome;
-use super::recall::Recalled;
 use crate::store::cache::{Cache, NOTES};
 use crate::store::file::{self, Durability};
 use crate::store::index::{INDEX, Seen, Stamp, TICK};
@@ -26,7 +22,7 @@ use crate::store::results::{Folder, MANIFEST, Published};
 use crate::study::Study;
 use declare::digest::{Digest, Writer};
 
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 
 /// What a run with nothing to do says.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -36,11 +32,6 @@ pub struct Note {
     pub stages: usize,
     #[serde(with = "crate::store::hexadecimal")]
     question: Digest,
-    /// The same whatever the text.
-    #[serde(with = "crate::store::hexadecimal")]
-    asked: Digest,
-    /// Of what is recalled; none where that is nothing.
-    recalled: Option<String>,
     boot: String,
     files: Vec<(PathBuf, u64, Stamp)>,
     /// Of the study itself.
@@ -67,15 +58,15 @@ impl Where<'_> {
     }
 }
 
-/// Everything that decides what a run comes to, besides files and the study's text; none where it computes in any case.
-fn asked(code: &str, options: &Options) -> Option<Digest> {
+/// Everything that decides what a run comes to, besides files; none where it computes in any case.
+fn question(code: &str, options: &Options, text: &[u8]) -> Option<Digest> {
     let Options { jobs: _, keep_going: _, force, only, wanted, limits: _, share } = options;
     // What is only a part of a run leaves nothing that is up to date.
     if *force != Force::Nothing || !share.is_empty() {
         return None;
     }
     let mut writer = Writer::new("gearstudy 1 question");
-    writer.text(code).count(only.len());
+    writer.text(code).text(&blake3::hash(text).to_string()).count(only.len());
     for name in only {
         writer.text(name);
     }
@@ -89,40 +80,19 @@ fn asked(code: &str, options: &Options) -> Option<Digest> {
     Some(writer.finish())
 }
 
-fn question(asked: &Digest, text: &[u8]) -> Digest {
-    Writer::new("gearstudy 1 question of a text").digest(asked).text(&blake3::hash(text).to_string()).finish()
-}
-
-/// A note of which all files are as they were, for what is asked now of whatever text.
-fn unchanged(at: &Where<'_>, code: &str, options: &Options) -> Option<Note> {
-    let path = at.note()?;
-    let moment = Stamp::of(&fs::metadata(&path).ok()?).earlier();
-    let note: Note = serde_json::from_slice(&file::read(&path, file::MOST_MANIFEST).ok()?).ok()?;
-    let is_asked = note.format == FORMAT && note.boot == boot() && asked(code, options)? == note.asked;
-    let is_told = |(_, _, stamp): &(PathBuf, u64, Stamp)| stamp.is_before(moment);
-    let is_as_noted = |(path, bytes, stamp): &(PathBuf, u64, Stamp)| is_as_noted(path, *bytes, stamp);
-    (is_asked && note.files.iter().all(is_told) && note.files.iter().all(is_as_noted)).then_some(note)
-}
-
 /// The note that a study is up to date, when it still is.
 #[must_use]
 pub fn of(at: &Where<'_>, code: &str, options: &Options) -> Option<Note> {
-    let note = unchanged(at, code, options)?;
+    let path = at.note()?;
+    let moment = Stamp::of(&fs::metadata(&path).ok()?).earlier();
+    let note: Note = serde_json::from_slice(&file::read(&path, file::MOST_MANIFEST).ok()?).ok()?;
     let text = file::read(at.study, file::MOST_MANIFEST).ok()?;
-    (question(&note.asked, &text) == note.question).then_some(note)
-}
-
-/// What is recalled of the study of the last run, while all files but its own are as that run left them.
-pub(super) fn recalled(at: &Where<'_>, code: &str, options: &Options) -> Option<(Note, Recalled)> {
-    let note = unchanged(at, code, options)?;
-    // Of what is only a part of the stages the others may have no tables.
-    let digest = note.recalled.as_ref().filter(|_| options.only.is_empty())?;
-    let bytes = file::read(&stages(&at.note()?), file::MOST_MANIFEST).ok()?;
-    if blake3::hash(&bytes).to_string() != *digest {
-        return None;
-    }
-    let recalled = postcard::from_bytes(&bytes).ok()?;
-    Some((note, recalled))
+    let is_asked = note.format == FORMAT && note.boot == boot() && question(code, options, &text)? == note.question;
+    let is_as_noted = |(path, bytes, stamp): &(PathBuf, u64, Stamp)| {
+        let now = fs::metadata(path).ok().filter(fs::Metadata::is_file);
+        stamp.is_before(moment) && now.is_some_and(|now| (now.len(), Stamp::of(&now)) == (*bytes, *stamp))
+    };
+    (is_asked && note.files.iter().all(is_as_noted)).then_some(note)
 }
 
 impl Note {
@@ -131,42 +101,17 @@ impl Note {
         for message in &self.notes {
             observer.event(&Event::Warning { message });
         }
-        self.tell_warnings_of(|_| true, observer);
-    }
-
-    /// Tells the warnings of the stages that are chosen.
-    pub(super) fn tell_warnings_of(&self, is_chosen: impl Fn(&str) -> bool, observer: &dyn Observer) {
-        for (stage, warnings) in self.warnings.iter().filter(|(stage, _)| is_chosen(stage)) {
+        for (stage, warnings) in &self.warnings {
             observer.event(&Event::Recalled { stage, warnings });
         }
     }
-
-    /// Whether all its files in a folder are as they were.
-    pub(super) fn holds_in(&self, folder: &Path) -> bool {
-        let Ok(folder) = std::path::absolute(folder) else { return false };
-        let mut inside = self.files.iter().filter(|(path, _, _)| path.starts_with(&folder));
-        self.boot == boot() && inside.all(|(path, bytes, stamp)| is_as_noted(path, *bytes, stamp))
-    }
 }
 
-fn is_as_noted(path: &Path, bytes: u64, stamp: &Stamp) -> bool {
-    let now = fs::metadata(path).ok().filter(fs::Metadata::is_file);
-    now.is_some_and(|now| (now.len(), Stamp::of(&now)) == (bytes, *stamp))
-}
-
-/// Where what is recalled lies.
-fn stages(note: &Path) -> PathBuf {
-    note.with_extension("stages")
-}
-
-/// Notes that a study is up to date, where a run came to its end and all it needs is on the disk; `earlier`: the note of the
-/// run whose stages were not read again.
-pub(super) fn keep<'r>(
+/// Notes that a study is up to date, where a run came to its end and all it needs is on the disk.
+pub(super) fn keep(
     study: &Study,
     (cache, options, folder): (&Cache, &Options, &Folder),
     (outcome, published): (&Outcome, &Published),
-    recalled: impl FnOnce() -> Option<Cow<'r, Recalled>>,
-    earlier: Option<&Note>,
 ) {
     let results = folder.path().parent().unwrap_or(folder.path());
     let at = Where { study: &study.path, results, cache: cache.root() };
@@ -174,30 +119,23 @@ pub(super) fn keep<'r>(
     if !ended || outcome.unkept(cache) > 0 || cache.problems() != (None, None) || published.seen.is_empty() {
         return;
     }
-    let (Some(path), Some(asked)) = (at.note(), asked(study.program.about.code, options)) else { return };
-    let before = earlier.map_or(&[][..], |note| &note.files).iter().map(|(path, _, _)| path);
-    // Those of the cache: what lies in the results is what was published now.
-    let before = before.filter(|path| std::path::absolute(cache.root()).is_ok_and(|root| path.starts_with(root)));
-    let Some(files) = files((cache, &study.name), folder, outcome, &published.seen, before.cloned()) else { return };
-    let (question, code) = (question(&asked, study.text.as_bytes()), study.program.about.code);
-    let notes = study.warnings().collect();
-    let of_run = outcome.stages.iter().map(|stage| (stage.name.clone(), stage.warnings.clone()));
-    let is_unread = |stage: &str| study.unread.iter().any(|unread| unread.name == stage);
-    let of_earlier = earlier.iter().flat_map(|note| &note.warnings).filter(|(stage, _)| is_unread(stage)).cloned();
-    let warnings = of_run.chain(of_earlier).filter(|(_, warnings)| !warnings.is_empty()).collect();
-    let (study, stages) = (study.name.clone(), outcome.stages.len() + study.unread.len());
-    let mut note =
-        Note { format: FORMAT, study, stages, question, asked, recalled: None, boot: boot(), files, notes, warnings };
-    let same = |known: &Note| Note { recalled: note.recalled.clone(), ..known.clone() } == note;
-    if unchanged(&at, code, options).is_some_and(|earlier| same(&earlier)) {
+    let code = study.program.about.code;
+    let (Some(path), Some(question)) = (at.note(), question(code, options, study.text.as_bytes())) else { return };
+    let Some(files) = files((cache, &study.name), folder, outcome, &published.seen) else { return };
+    let of_stages = outcome.stages.iter().filter(|stage| !stage.warnings.is_empty());
+    let note = Note {
+        format: FORMAT,
+        study: study.name.clone(),
+        stages: outcome.stages.len(),
+        question,
+        boot: boot(),
+        files,
+        notes: study.warnings().collect(),
+        warnings: of_stages.map(|stage| (stage.name.clone(), stage.warnings.clone())).collect(),
+    };
+    if of(&at, code, options).is_some_and(|earlier| earlier == note) {
         return;
     }
-    note.recalled = recalled().and_then(|recalled| {
-        let bytes = postcard::to_stdvec(&*recalled).ok()?;
-        fs::create_dir_all(path.parent()?).ok()?;
-        file::write(&self::stages(&path), &bytes, Durability::Lazy).ok()?;
-        Some(blake3::hash(&bytes).to_string())
-    });
     // Without it the next run finds out for itself.
     let _ = write(&path, &note);
 }
@@ -223,7 +161,6 @@ fn files(
     folder: &Folder,
     outcome: &Outcome,
     seen: &[Seen],
-    before: impl Iterator<Item = PathBuf>,
 ) -> Option<Vec<(PathBuf, u64, Stamp)>> {
     let mut files = Vec::new();
     for seen in seen {
@@ -240,10 +177,5 @@ fn files(
         *path = std::path::absolute(&*path).ok()?;
         Some(())
     })?;
-    let known: BTreeSet<PathBuf> = files.iter().map(|(path, _, _)| path.clone()).collect();
-    for path in before.filter(|path| !known.contains(path)) {
-        let metadata = fs::metadata(&path).ok()?;
-        files.push((path, metadata.len(), Stamp::of(&metadata)));
-    }
     Some(files)
 }

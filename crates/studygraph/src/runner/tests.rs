@@ -309,8 +309,6 @@ impl Bench {
             path: self.folder.path().join("study.yaml"),
             text: String::new(),
             nodes: specs.iter().map(node).collect(),
-            values: 0,
-            unread: Vec::new(),
             notes: Vec::new(),
             program: self.program,
         }

@@ -12,8 +12,6 @@ pub mod steps;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use serde::{Deserialize, Serialize};
-
 use crate::table::data::{Cell, Table};
 use crate::table::schema::Schema;
 use crate::table::select::CellName;
@@ -228,7 +226,7 @@ impl Port {
 }
 
 /// A table that is wanted, and which of its on-demand columns.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Want {
     pub table: String,
     /// Columns wanted by name; the columns that are not on demand come in any case.

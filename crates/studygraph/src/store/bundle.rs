@@ -86,7 +86,7 @@ fn bundles(manifest: &Manifest) -> Vec<Bundle> {
 }
 
 /// Whether a table may be one of a bundle.
-pub fn fits(table: &TableRecord) -> bool {
+fn fits(table: &TableRecord) -> bool {
     let columns = &table.columns;
     let keyed = columns.iter().any(|column| column.key) && columns.iter().all(|column| column.name != STAGE);
     keyed && table.files.is_empty() && table.rows <= MOST_ROWS
@@ -206,11 +206,6 @@ impl Opened {
         let table = Arc::new(table);
         self.all().insert(place.to_owned(), Arc::clone(&table));
         table
-    }
-
-    /// A file is another one now.
-    pub fn forget(&self, place: &str) {
-        self.all().remove(place);
     }
 
     /// Files may be others by now.

@@ -18,7 +18,6 @@ use hdf5_metno::types::VarLenUnicode;
 use hdf5_metno::{Dataset, File, FileBuilder, Group, H5Type, Location};
 
 use super::error::StoreError;
-use super::file;
 use super::manifest::TableRecord;
 use super::parquet::flags;
 use crate::table::data::{Data, Table};
@@ -93,46 +92,6 @@ impl Writer {
 /// A sentence, when the file is not one of ours.
 pub fn read(path: &Path, stage: &str, table: &str) -> Result<Table, String> {
     read_table(path, stage, table).map_err(|error| error.to_string())?
-}
-
-/// The bytes of a file with other numbers in some tables, given by group and name, as they were and as they are; none where more
-/// than numbers changed, or where the file does not have what was. Each column of numbers lies in one piece.
-pub fn patched<'t>(
-    path: &Path,
-    tables: impl Iterator<Item = ((String, String), &'t Table, &'t Table)>,
-) -> Option<Vec<u8>> {
-    let mut bytes = file::read(path, file::MOST_TABLE).ok()?;
-    let opened = unlocked().open(path).ok()?;
-    for ((group, name), old, new) in tables {
-        if old.rows() != new.rows() || old.schema() != new.schema() {
-            return None;
-        }
-        let group = opened.group(&group).and_then(|group| group.group(&name)).ok()?;
-        for ((column, old), new) in new.schema().columns.iter().zip(old.columns()).zip(new.columns()) {
-            let (Some(was), Some(is)) = (number_bytes(old), number_bytes(new)) else {
-                if old == new {
-                    continue;
-                }
-                return None;
-            };
-            if was != is {
-                let at = usize::try_from(group.dataset(&column.name).ok()?.offset()?).ok()?;
-                let there = bytes.get_mut(at..at + was.len()).filter(|there| **there == *was)?;
-                there.copy_from_slice(&is);
-            }
-        }
-    }
-    Some(bytes)
-}
-
-/// Numbers as they lie in a file; none of words.
-fn number_bytes(data: &Data) -> Option<Vec<u8>> {
-    match data {
-        Data::Float(values) => Some(values.iter().flat_map(|value| value.to_ne_bytes()).collect()),
-        Data::Integer(values) => Some(values.iter().flat_map(|value| value.to_ne_bytes()).collect()),
-        Data::Flag(values) => Some(values.iter().map(|value| u8::from(*value)).collect()),
-        Data::Text(_) => None,
-    }
 }
 
 /// Without libhdf5's own lock (1.10.7 or later): no file is written in place, and the lock fails on some network disks.
@@ -307,38 +266,6 @@ mod tests {
         // Times in HDF5 count seconds.
         std::thread::sleep(std::time::Duration::from_millis(1100));
         assert!(first == written(&[("ste", everything(300))]).2);
-    }
-
-    #[test]
-    fn other_numbers_are_the_file_that_has_them_from_the_first() {
-        let old = everything(300);
-        let other = |change: &dyn Fn(&mut Data)| {
-            let mut columns = old.columns().to_vec();
-            columns.iter_mut().for_each(change);
-            Table::from_columns(old.schema().clone(), columns).unwrap()
-        };
-        let numbers = other(&|data| match data {
-            Data::Float(values) => values[7] = -0.0,
-            Data::Integer(values) => values[299] += 1,
-            Data::Flag(values) => values[3] ^= true,
-            Data::Text(_) => {}
-        });
-        let name = || ("b".to_owned(), "curve".to_owned());
-        let beside = [("a", everything(3)), ("b", old.clone()), ("c", everything(70))];
-        let (_folder, path, bytes) = written(&beside);
-        let patch = |was: &Table, is: &Table| patched(&path, [(name(), was, is)].into_iter());
-        assert!(patch(&old, &old).unwrap() == bytes);
-        let beside = [("a", everything(3)), ("b", numbers.clone()), ("c", everything(70))];
-        assert!(patch(&old, &numbers).unwrap() == written(&beside).2 && written(&beside).2 != bytes);
-        let words = other(&|data| {
-            if let Data::Text(values) = data {
-                values[5] += "x";
-            }
-        });
-        assert!(patch(&old, &words).is_none(), "words lie elsewhere");
-        assert!(patch(&old, &everything(299)).is_none(), "another number of rows");
-        assert!(patch(&numbers, &old).is_none(), "what is there is not what was");
-        assert!(patched(&path, [(("b".to_owned(), "other".to_owned()), &old, &numbers)].into_iter()).is_none());
     }
 
     #[test]

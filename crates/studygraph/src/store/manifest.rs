@@ -3,7 +3,6 @@
 //! Must not know: how any of it was computed. Field names are read by other programs: additions only, or another format.
 
 mod config;
-mod cut;
 mod lines;
 mod shown;
 mod unread;
@@ -17,8 +16,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 pub use config::Config;
-pub use cut::Cut;
-pub use shown::{More, places as shown_places};
+pub use shown::More;
 pub use unread::{Unread, check_version};
 
 use super::entry::{StoredColumn, StoredTable};

@@ -12,7 +12,6 @@ mod known;
 mod pieces;
 mod publish;
 mod remove;
-mod splice;
 #[cfg(test)]
 mod tests;
 
@@ -25,7 +24,6 @@ pub use known::{FileState, Known};
 #[cfg(feature = "hdf5")]
 pub use publish::hdf5_bytes;
 pub use publish::{Bytes, Draw, Drawn, Elsewhere, Pieces, Published, Source, Tables};
-pub use splice::{Part, Spliced};
 
 use super::bundle::{Opened, is_bundle};
 use super::error::StoreError;

@@ -5,15 +5,14 @@
 use std::path::Path;
 
 use super::blame::Blame;
-use super::blocks::Blocks;
 use super::decode::Decoder;
-use super::document::{Content, KeyValue, Node as Tree, parse};
+use super::document::{Content, KeyValue, Node as Tree};
 use super::identity::plain_name;
 use super::links::Draft;
 use super::overrides::Stages;
 use super::path::FieldPath;
 use super::words::{alternatives, quote};
-use super::{Changes, Node, Source, Study, Unread, cells, files, intervals, links, settings};
+use super::{Changes, Node, Source, Study, cells, files, intervals, links, settings};
 use crate::program::Program;
 use crate::stage::Kind;
 use crate::table::tolerance::Allowance;
@@ -72,27 +71,6 @@ pub fn examine(
     (sound, wrong)
 }
 
-/// A study of some of the stages of a text; the others are told by name and kind. None where anything is wrong, or where a
-/// file would have to be read.
-pub fn part(
-    blocks: &Blocks,
-    stages: &[usize],
-    unread: Vec<Unread>,
-    path: &Path,
-    program: &'static Program,
-) -> Option<Study> {
-    let (text, shifts) = blocks.of(stages);
-    let mut root = parse(&text).ok()??;
-    root.shift(&shifts);
-    if !files::named(&root).is_empty() {
-        return None;
-    }
-    let mut wrong = Vec::new();
-    let study = sound_tree(Some(root), blocks.text(), path, program, &mut wrong).ok()??;
-    // Whether an interval has an effect is known of a whole study alone.
-    (wrong.is_empty() && study.notes.is_empty()).then_some(Study { unread, ..study })
-}
-
 fn sound_tree(
     root: Option<Tree>,
     text: &str,
@@ -104,7 +82,6 @@ fn sound_tree(
     let help = "a study starts with `study: NAME` and `stages:`";
     let empty = || Diagnostic::new("the file is empty").at(start).help(help);
     let root = root.filter(|root| !root.is_null()).ok_or_else(empty)?;
-    let values = root.values();
     let mut root = files::expanded(with_what_is_set(root, program.kinds)?, text)?;
     name_as_yaml_reads_it(&mut root)?;
     let Content::Mapping(pairs) = &root.content else {
@@ -161,8 +138,6 @@ fn sound_tree(
         changes: Changes::default(),
         name: keys.text("study").to_owned(),
         nodes,
-        unread: Vec::new(),
-        values,
         notes,
         program,
     }))

@@ -20,7 +20,7 @@ use declare::text::unfit;
 /// Levels of nesting, aliases included.
 const DEEPEST: usize = 64;
 /// Scalars, lists and mappings, copies made by anchors and aliases included.
-pub const MOST_NODES: usize = 100_000;
+const MOST_NODES: usize = 100_000;
 
 /// One value of the text.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,15 +59,6 @@ impl Node {
         matches!(self.content, Content::Mapping(_))
     }
 
-    /// How many values it is made of, keys among them.
-    pub fn values(&self) -> usize {
-        match &self.content {
-            Content::Scalar { .. } => 1,
-            Content::Sequence(items) => 1 + items.iter().map(Self::values).sum::<usize>(),
-            Content::Mapping(pairs) => 1 + pairs.iter().map(|pair| 1 + pair.node.values()).sum::<usize>(),
-        }
-    }
-
     /// What was found, for a message.
     pub fn describe(&self) -> String {
         match &self.content {
@@ -102,8 +93,6 @@ impl Node {
 /// How far a piece of a text lies behind its place in another one.
 #[derive(Clone, Copy, Debug)]
 pub struct Shift {
-    /// Where it begins.
-    pub from: usize,
     pub bytes: usize,
     pub lines: usize,
 }
@@ -116,22 +105,16 @@ impl Shift {
 }
 
 impl Node {
-    /// Moves what was read of a text to where its pieces lie in the whole.
-    pub fn shift(&mut self, shifts: &[Shift]) {
-        let moved = |place: &mut Place| {
-            let piece = shifts.partition_point(|shift| shift.from <= place.offset);
-            if let Some(shift) = piece.checked_sub(1).map(|piece| shifts[piece]) {
-                *place = shift.moved(*place);
-            }
-        };
-        moved(&mut self.place);
+    /// Moves all places of the tree from the piece to the whole text.
+    pub fn shift(&mut self, shift: Shift) {
+        self.place = shift.moved(self.place);
         match &mut self.content {
             Content::Scalar { .. } => {}
-            Content::Sequence(items) => items.iter_mut().for_each(|item| item.shift(shifts)),
+            Content::Sequence(items) => items.iter_mut().for_each(|item| item.shift(shift)),
             Content::Mapping(pairs) => {
                 for pair in pairs {
-                    moved(&mut pair.place);
-                    pair.node.shift(shifts);
+                    pair.place = shift.moved(pair.place);
+                    pair.node.shift(shift);
                 }
             }
         }

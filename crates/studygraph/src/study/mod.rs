@@ -6,7 +6,6 @@
 mod around;
 mod assemble;
 mod blame;
-pub mod blocks;
 mod cells;
 mod changes;
 mod characters;
@@ -47,7 +46,6 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 pub use changes::{Changes, Refused, Settings};
-pub use document::MOST_NODES as MOST_VALUES;
 
 use crate::program::Program;
 use crate::stage::{Kind, Stage};
@@ -80,23 +78,10 @@ pub struct Study {
     pub tolerances: Vec<Allowance>,
     /// In the order of the file.
     pub nodes: Vec<Node>,
-    /// How many values were read.
-    pub values: usize,
-    /// Stages of the file that were not read, since nothing is to be done with them; in the order of the file.
-    pub unread: Vec<Unread>,
     /// What is valid and hardly meant: for the user, no part of any result.
     pub notes: Vec<Diagnostic>,
     /// Whose kinds of stages they are.
     pub program: &'static Program,
-}
-
-/// A stage that was not read.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Unread {
-    pub name: String,
-    pub kind: &'static str,
-    /// How many of those that were read stand before it.
-    pub after: usize,
 }
 
 /// One stage of a study.
@@ -136,28 +121,10 @@ impl Study {
         })
     }
 
-    /// All its stages in the order of the file: those that were read by their places among the nodes, the others by name.
-    pub fn stages(&self) -> impl Iterator<Item = Result<usize, &Unread>> {
-        let mut unread = self.unread.iter().peekable();
-        let mut node = 0;
-        std::iter::from_fn(move || {
-            if let Some(stage) = unread.next_if(|stage| stage.after <= node) {
-                return Some(Err(stage));
-            }
-            node += 1;
-            (node <= self.nodes.len()).then_some(Ok(node - 1))
-        })
-    }
-
     /// The files that its results depend on: its own, then those that it names.
     #[must_use]
     pub fn files(&self) -> Vec<PathBuf> {
-        let named = if self.unread.is_empty() {
-            self.changes.files().map(Path::to_owned).collect()
-        } else {
-            files(&self.text, &self.path, self.program, &Settings::default())
-        };
-        [self.path.clone()].into_iter().chain(named).collect()
+        [self.path.clone()].into_iter().chain(self.changes.files().map(Path::to_owned)).collect()
     }
 
     /// What is wrong with it, found after it was read.
@@ -272,26 +239,6 @@ pub fn load_changed(path: &Path, program: &'static Program, set: &Settings) -> R
 /// As [`load_changed`].
 pub fn examine(path: &Path, program: &'static Program, set: &Settings) -> Result<Study, Refused> {
     changes::examine(&read::read(path)?, path, program, set)
-}
-
-/// The text of a study, as [`load`] reads it.
-///
-/// # Errors
-/// When it cannot be read.
-pub fn text_of(path: &Path) -> Result<String, LoadError> {
-    read::read(path)
-}
-
-/// Reads and checks some stages of a study that no other one reads; none where anything is wrong, which [`load`] says.
-#[must_use]
-pub fn load_part(
-    blocks: &blocks::Blocks,
-    stages: &[usize],
-    unread: Vec<Unread>,
-    path: &Path,
-    program: &'static Program,
-) -> Option<Study> {
-    assemble::part(blocks, stages, unread, path, program)
 }
 
 /// Checks a study whose text was read from `path`.

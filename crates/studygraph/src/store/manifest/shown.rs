@@ -19,43 +19,25 @@ pub struct More {
     pub omissions: usize,
 }
 
-/// The places of stages that are shown, by their kinds: all where a stage of the kind `reader` says what is shown, otherwise of
-/// very many of a kind the first ones.
-#[must_use]
-pub fn places(kinds: &[&str], reader: &str) -> Vec<usize> {
-    let mut counts: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
-    for kind in kinds {
-        counts.entry(kind).or_default().0 += 1;
-    }
-    let is_all = counts.contains_key(reader);
-    let mut is_shown = |kind: &str| {
-        let Some((all, met)) = counts.get_mut(kind) else { return false };
-        *met += 1;
-        is_all || *all <= MANY || *met <= SHOWN
-    };
-    (0..kinds.len()).filter(|&place| is_shown(kinds[place])).collect()
-}
-
-impl More {
-    /// Counts stages that are not shown.
-    pub fn add(&mut self, kind: &str, omissions: usize) {
-        *self.stages.entry(kind.to_owned()).or_default() += 1;
-        self.omissions += omissions;
-    }
-}
-
 impl Manifest {
-    /// The same with the stages that a page shows, those that warn, and those that did not come to their end.
+    /// The same with the stages that a page shows: all if there is a stage of the kind `reader`, otherwise the first ones of a
+    /// kind with very many stages, those that warn, and those that did not come to their end.
     #[must_use]
     pub fn shown(&self, reader: &str) -> Self {
-        let kinds: Vec<&str> = self.stages.iter().map(|stage| stage.kind.as_str()).collect();
-        let mut places = places(&kinds, reader).into_iter().peekable();
+        let mut counts: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+        for stage in &self.stages {
+            counts.entry(&stage.kind).or_default().0 += 1;
+        }
+        let is_all = counts.contains_key(reader);
         let (mut stages, mut more) = (Vec::new(), self.more.clone());
-        for (place, stage) in self.stages.iter().enumerate() {
-            if places.next_if_eq(&place).is_some() || stage.is_told() {
+        for stage in &self.stages {
+            let (all, met) = counts.entry(&stage.kind).or_default();
+            *met += 1;
+            if is_all || *all <= MANY || *met <= SHOWN || !stage.is_complete() || !stage.warnings.is_empty() {
                 stages.push(stage.clone());
             } else {
-                more.add(&stage.kind, stage.left_out.len());
+                *more.stages.entry(stage.kind.clone()).or_default() += 1;
+                more.omissions += stage.left_out.len();
             }
         }
         Self { stages, more, ..self.without_stages() }
@@ -89,17 +71,6 @@ impl StageRecord {
     #[must_use]
     pub fn is_complete(&self) -> bool {
         matches!(self.status.as_str(), "hit" | "ran")
-    }
-
-    /// What it says after a run that found its tables.
-    #[must_use]
-    pub fn unchanged(self) -> Self {
-        Self { status: "hit".to_owned(), why: "unchanged".to_owned(), ..self }
-    }
-
-    /// Whether somebody is told of it.
-    pub(in crate::store) fn is_told(&self) -> bool {
-        !self.is_complete() || !self.warnings.is_empty()
     }
 }
 

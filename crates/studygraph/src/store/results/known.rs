@@ -62,18 +62,8 @@ pub struct Known {
 
 impl Known {
     pub(super) fn new(folder: Folder, manifest: Manifest, bytes: &[u8]) -> Self {
-        let index = Index::read(folder.path()).unwrap_or_default();
-        Self::with(folder, manifest, index, index::manifest_digest(bytes))
-    }
-
-    /// Where the manifest is known to be the one that the index was written for.
-    pub(super) fn as_indexed(folder: Folder, manifest: Manifest) -> Self {
-        let index = Index::read(folder.path()).unwrap_or_default();
-        let digest = index.0.manifest.clone();
-        Self::with(folder, manifest, index, digest)
-    }
-
-    fn with(folder: Folder, manifest: Manifest, (index, moment): (Index, i64), digest: String) -> Self {
+        let (index, moment) = Index::read(folder.path()).unwrap_or_default();
+        let digest = index::manifest_digest(bytes);
         let belongs = index.manifest == digest;
         let moment = index.is_of_this_boot().then_some(moment);
         let (states, looked, values) = (Mutex::default(), Mutex::default(), Mutex::default());

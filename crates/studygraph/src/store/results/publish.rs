@@ -8,7 +8,7 @@
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
-use std::fs::{self, File};
+use std::fs;
 use std::io::{BufWriter, ErrorKind, Write};
 use std::sync::Arc;
 
@@ -257,15 +257,15 @@ impl Folder {
         let (drawn_by, undrawn) = self.put_pages(old.as_ref(), &new, &mut changes, &mut listed, source)?;
         self.remove(&changes.remove)?;
         new.files = listed.files;
-        self.put_manifest(|writer| new.write(writer), old.is_some(), drawn_by, listed.seen.clone())?;
+        self.put_manifest(&new, old.is_some(), drawn_by, listed.seen.clone())?;
         Ok(Published { manifest: new, changes, undrawn, seen: listed.seen })
     }
 
-    /// Writes the index, and then gives its name to the manifest that says that all is as it should be. `fill` writes its text,
-    /// which for thousands of stages is the largest of all that is written, and is never in memory as a whole.
-    pub(super) fn put_manifest(
+    /// Writes the index, and then gives its name to the manifest that says that all is as it should be. Its text, which for
+    /// thousands of stages is the largest of all that is written, is never in memory as a whole.
+    fn put_manifest(
         &self,
-        fill: impl FnOnce(&mut BufWriter<Digesting<&mut File>>) -> Result<(), serde_json::Error>,
+        manifest: &Manifest,
         replaces: bool,
         drawn_by: String,
         seen: Vec<Seen>,
@@ -275,7 +275,7 @@ impl Folder {
         let durability = if replaces { Durability::Synced } else { Durability::Lazy };
         file::write_by(&path, durability, |file| {
             let mut writer = BufWriter::with_capacity(BUFFER, Digesting::new(file));
-            let filled = fill(&mut writer).and_then(|()| writer.flush().map_err(serde_json::Error::io));
+            let filled = manifest.write(&mut writer).and_then(|()| writer.flush().map_err(serde_json::Error::io));
             filled.map_err(|error| {
                 if error.is_io() { StoreError::io("write", &path)(error.into()) } else { unwritten(error) }
             })?;
@@ -286,23 +286,20 @@ impl Folder {
     /// Takes whatever is about to be replaced from the list: if this run is killed, the next one must not take a new file
     /// for the old one. `text` is the manifest's, where it has one that is whole.
     pub(super) fn strike(&self, old: &Known, text: Option<Vec<u8>>, changes: &Changes) -> Result<(), StoreError> {
-        let Some(files) = self.left_by(old, changes) else { return Ok(()) };
-        let text = match text.and_then(|text| Manifest::with_other_files(text, &files)) {
-            Some(text) => text,
-            None => old.manifest.text_with(&files).map_err(unwritten)?,
-        };
-        file::write(&self.path().join(MANIFEST), &text, Durability::Synced)
-    }
-
-    /// The files of the list that are not about to be replaced; none where that is none of them.
-    pub(super) fn left_by(&self, old: &Known, changes: &Changes) -> Option<Vec<FileRecord>> {
         let written: HashSet<&String> = changes.tables.iter().chain(&changes.files).collect();
         let replaced = |file: &String| {
             written.contains(file) || (changes.hdf5 && *file == self.hdf5_file()) || (changes.drawn && is_drawn(file))
         };
         let earlier = &old.manifest.files;
         let files: Vec<FileRecord> = earlier.iter().filter(|record| !replaced(&record.file)).cloned().collect();
-        (files.len() < earlier.len()).then_some(files)
+        if files.len() == earlier.len() {
+            return Ok(());
+        }
+        let text = match text.and_then(|text| Manifest::with_other_files(text, &files)) {
+            Some(text) => text,
+            None => old.manifest.text_with(&files).map_err(unwritten)?,
+        };
+        file::write(&self.path().join(MANIFEST), &text, Durability::Synced)
     }
 
     pub(super) fn put(&self, listed: &mut Listed, file: &str, bytes: &[u8], varies: bool) -> Result<(), StoreError> {
@@ -406,6 +403,6 @@ pub fn hdf5_bytes<T>(
 }
 
 #[allow(clippy::needless_pass_by_value)] // for `map_err`
-pub(super) fn unwritten(error: serde_json::Error) -> StoreError {
+fn unwritten(error: serde_json::Error) -> StoreError {
     StoreError::Format { table: MANIFEST.to_owned(), problem: error.to_string() }
 }
