@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use crate::python;
 use gearstudy::stage::kinds::KINDS;
@@ -16,6 +16,46 @@ fn the_schema_in_the_repository_is_up_to_date() {
     let kept = fs::read_to_string(&path).unwrap_or_default();
     let refresh = "cargo run -- schema > schemas/study.schema.json";
     assert!(kept == schema_text(KINDS), "schemas/study.schema.json is out of date; refresh it with: {refresh}");
+}
+
+/// A schema with the definitions of `shared` in the places that refer to them.
+fn restored(schema: &Value, shared: &Map<String, Value>) -> Value {
+    match schema {
+        Value::Array(all) => all.iter().map(|inner| restored(inner, shared)).collect(),
+        Value::Object(object) => {
+            let mut whole = Map::new();
+            for (keyword, inner) in object {
+                let name = inner.as_str().and_then(|text| text.strip_prefix("#/$defs/"));
+                match name.and_then(|name| shared.get(name)).filter(|_| keyword == "$ref") {
+                    Some(definition) => {
+                        let definition = restored(definition, shared);
+                        let definition = definition.as_object().unwrap();
+                        // A keyword on both sides would have another meaning in an editor.
+                        assert!(!definition.keys().any(|keyword| object.contains_key(keyword)), "{schema}");
+                        whole.extend(definition.clone());
+                    }
+                    None => drop(whole.insert(keyword.clone(), restored(inner, shared))),
+                }
+            }
+            Value::Object(whole)
+        }
+        other => other.clone(),
+    }
+}
+
+/// Tier: invariant; the schema in the file is smaller than the declared one, and has every annotation and limit in the same place.
+#[test]
+fn shared_definitions_leave_every_place_as_declared() {
+    let declared = studygraph::study::schema::schema(KINDS);
+    let text = schema_text(KINDS);
+    assert!(text.len() < 300_000, "{} bytes", text.len());
+    let mut file: Value = serde_json::from_str(&text).unwrap();
+    let definitions = file["$defs"].as_object_mut().unwrap();
+    let (kept, shared): (Map<_, _>, Map<_, _>) =
+        std::mem::take(definitions).into_iter().partition(|(name, _)| declared["$defs"].get(name).is_some());
+    file["$defs"] = Value::Object(kept);
+    assert!(shared.len() > 100, "{}", shared.len());
+    assert!(restored(&file, &shared) == declared);
 }
 
 /// Second method: another program reads the schema by the specification, and the studies with another YAML reader.

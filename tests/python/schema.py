@@ -91,6 +91,19 @@ def has_unit(text):
     return " " in str(text) and "%" not in str(text)
 
 
+def restored(one):
+    """A schema with the definitions that several places share in these places."""
+    if isinstance(one, dict):
+        name = str(one.get("$ref", "")).removeprefix("#/$defs/")
+        if name and not name.startswith(("stage", "kind_", "family_")):
+            return restored({**schema["$defs"][name], **{key: inner for key, inner in one.items() if key != "$ref"}})
+        return {key: restored(inner) for key, inner in one.items()}
+    return [restored(inner) for inner in one] if isinstance(one, list) else one
+
+
+schema = restored(schema)
+
+
 def schemas(one):
     """All schemas inside one, without following references."""
     if isinstance(one, dict):

@@ -4,6 +4,7 @@
 //! declarations, so the same program always gives the same text. Must not know: any kind by name.
 
 mod leaf;
+mod shared;
 
 use serde_json::{Map, Value, json};
 
@@ -15,7 +16,7 @@ use crate::stage::Kind;
 use declare::parameter::{Field, Member, Presence, Shape, Span};
 use declare::record::varied::Within;
 
-/// The schema of studies made of stages of these kinds.
+/// The schema of studies made of stages of these kinds, each field in its place.
 #[must_use]
 pub fn schema(kinds: &[&'static Kind]) -> Value {
     let mut families = Families::default();
@@ -103,10 +104,15 @@ pub fn schema(kinds: &[&'static Kind]) -> Value {
     })
 }
 
-/// The same as text, as it is kept in a file.
+/// The same as text for a file: what occurs more than once is defined once, and a level is indented by a tab.
 #[must_use]
 pub fn schema_text(kinds: &[&'static Kind]) -> String {
-    format!("{:#}\n", schema(kinds))
+    let text = format!("{:#}", shared::shared(schema(kinds)));
+    let indented = |line: &str| {
+        let words = line.trim_start();
+        "\t".repeat((line.len() - words.len()) / 2) + words + "\n"
+    };
+    text.lines().map(indented).collect()
 }
 
 fn required(fields: &[Field]) -> Vec<&'static str> {
