@@ -18,7 +18,7 @@ use serde_json::json;
 
 use super::progress::told;
 use super::watch::Board;
-use crate::report::script;
+use crate::report;
 use studygraph::store::archive::sha256_bytes;
 use studygraph::store::results::{Folder, PAGE};
 
@@ -309,7 +309,7 @@ fn opened(folder: &Path, name: &str) -> Option<(File, u64)> {
 
 fn send(stream: &mut Timed, answer: Reply) -> io::Result<()> {
     let source = |script: &str| format!("'sha256-{}'", STANDARD.encode(sha256_bytes(script.as_bytes())));
-    let (scripts, size) = ([source(script()), source(&answer.script)].join(" "), answer.body.size());
+    let (scripts, size) = ([source(report::SCRIPT), source(&answer.script)].join(" "), answer.body.size());
     let (status, sort) = (answer.status, answer.sort);
     let head =
         format!("HTTP/1.1 {status}\r\nContent-Type: {sort}\r\nContent-Length: {size}\r\n{HEADERS} {scripts}\r\n\r\n");

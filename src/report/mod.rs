@@ -41,7 +41,7 @@ use std::sync::Arc;
 
 use figure::{Figure, Tables};
 use order::Order;
-pub use page::script;
+pub use page::SCRIPT;
 
 use declare::number::{significant, with_unit};
 use studygraph::store::manifest::{Manifest, StageRecord};

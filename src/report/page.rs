@@ -21,6 +21,10 @@ use super::{ReportError, flags, integers, plot, seconds, texts, verdict};
 use studygraph::store::manifest::{Manifest, OmissionRecord, StageRecord};
 use studygraph::table::data::Table;
 
+/// The page's script.
+pub const SCRIPT: &str =
+    concat!(include_str!("page/common.js"), include_str!("page/figure.js"), include_str!("page/tables.js"));
+
 /// What is not computed is named where it would have taken this share of the run.
 const WORTH_NAMING: f64 = 0.01;
 
@@ -211,16 +215,9 @@ pub fn html(
         seconds: seconds(manifest.seconds),
         styles: [studygraph::page::STYLE, include_str!("page/page.css")],
         plot_style: plot::STYLE,
-        script: script(),
+        script: SCRIPT,
     };
     environment.get_template("page.html").and_then(|template| template.render(Serde(view))).map_err(failed)
-}
-
-/// The page's script as `scripts/minify` makes it of `page/*.js`, without the digest of those before it.
-#[must_use]
-pub fn script() -> &'static str {
-    let text = include_str!("page/page.min.js");
-    text.split_once('\n').map_or(text, |(_, script)| script)
 }
 
 fn counts(parts: &[ReportPart]) -> Result<Vec<Count>, ReportError> {

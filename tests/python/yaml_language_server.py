@@ -1,13 +1,15 @@
 """The YAML language server, which most editors have, with schemas/study.schema.json: over studies and over broken ones.
 
-    yaml_language_server.py SERVER
+    yaml_language_server.py
 
 Of every study it finds nothing. Of broken ones that a schema can tell from a study it finds something, in words that a reader
 understands. It completes quantities with their units, and its hover has title, description and example. Prints one line.
 """
 
 import json
+import os
 import pathlib
+import shutil
 import subprocess
 import sys
 
@@ -17,7 +19,7 @@ LINE = f"# yaml-language-server: $schema={SCHEMA.as_uri()}\n"
 
 class Server:
     def __init__(self, program):
-        self.process = subprocess.Popen(["node", program, "--stdio"], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self.process = subprocess.Popen([program, "--stdio"], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         self.number = 0
         snippets = {"textDocument": {"completion": {"completionItem": {"snippetSupport": True}}}}
         root = pathlib.Path.cwd().as_uri()
@@ -74,7 +76,12 @@ class Server:
         return self.ask(method, {"textDocument": {"uri": f"file:///desk/{name}.yaml"}, "position": place})
 
 
-server = Server(sys.argv[1])
+# Beside the interpreter or on the search path.
+folders = [os.path.dirname(sys.executable), os.environ.get("PATH", os.defpath)]
+program = shutil.which("yaml-language-server", path=os.pathsep.join(folders))
+if not program:
+    sys.exit(print("SKIPPED: yaml_language_server.py: there is no yaml-language-server"))
+server = Server(program)
 studies = sorted(pathlib.Path("studies").glob("*.yaml"))
 assert studies
 for path in studies:

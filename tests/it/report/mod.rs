@@ -7,16 +7,12 @@ mod study;
 mod tables;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::Write;
 use std::sync::Arc;
 
 use declare::record::Value;
-use flate2::Compression;
-use flate2::write::GzEncoder;
 use gearstudy::report::{self, Rendered, RenderedFigure};
 use record::{figures, group, item, list, published, text};
 use study::{manifest, render, study};
-use studygraph::store::archive::sha256;
 use studygraph::store::manifest::OmissionRecord;
 use studygraph::table::data::{Row, Table};
 use tables::tables;
@@ -244,22 +240,4 @@ fn the_terminal_shows_the_same_in_any_width() {
         }
         assert!(!shown.contains('\u{1b}'), "no colours");
     }
-}
-
-/// What `scripts/minify` made is of the sources that lie beside it, and less than 6 kB as a server would send it.
-#[test]
-fn the_script_is_made_of_its_sources_and_small() {
-    let made = include_str!("../../../src/report/page/page.min.js");
-    let sources = [
-        include_str!("../../../src/report/page/common.js"),
-        include_str!("../../../src/report/page/figure.js"),
-        include_str!("../../../src/report/page/tables.js"),
-    ];
-    let (digest, script) = made.split_once('\n').unwrap();
-    let stale = "the sources of the page's script have changed: scripts/minify";
-    assert_eq!(digest, format!("// {}", sha256(sources.concat().as_bytes())), "{stale}");
-    let mut packed = GzEncoder::new(Vec::new(), Compression::best());
-    packed.write_all(script.as_bytes()).unwrap();
-    let bytes = packed.finish().unwrap().len();
-    assert!(bytes < 5_800, "{bytes} bytes");
 }
