@@ -68,8 +68,7 @@ pub(super) fn query(asked: &Question, places: &Places, quiet: bool) -> Result<()
 fn list(tables: &mut Tables<'_>) -> Result<String, String> {
     let mut text = String::new();
     for (name, record) in all(tables)? {
-        let rows = record.rows;
-        text += &format!("{name}  {rows} {}\n", if rows == 1 { "row" } else { "rows" });
+        text += &format!("{name}  {}\n", counted(record.rows, "row"));
         for column in record.columns.iter() {
             let unit = if column.unit.is_empty() { String::new() } else { format!(" [{}]", column.unit) };
             text += &format!("  {}{unit}: {}\n", column.name, column.description);

@@ -35,8 +35,9 @@ pub struct Cells {
 }
 
 /// Which cell is marked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Best {
+    #[default]
     None,
     Smallest,
     Largest,

@@ -87,7 +87,7 @@ pub type Draw<'a> = dyn Fn(&str, &str, Kind, &str, &str, &str) -> Spec + 'a;
 
 fn of_transmission_error(stage: &str, draw: &Draw<'_>, tables: Tables<'_>) -> Vec<Spec> {
     let Some(summary) = tables(&format!("{stage}.summary")) else { return Vec::new() };
-    let torques = torques(&summary);
+    let torques = super::scattered::values(&summary, "torque");
     // The one in the middle: at the ends there is often no contact, or nothing but deflection.
     let Some(&torque) = torques.get(torques.len() / 2) else { return Vec::new() };
     let off = deviations(&summary);
@@ -225,15 +225,6 @@ fn fits(spec: &Spec, tables: Tables<'_>) -> bool {
         columns.all(|name| table.column(name).is_some())
             && studygraph::table::select::rows_where(&table, &spec.conditions).is_ok_and(|rows| !rows.is_empty())
     })
-}
-
-/// The different torques of a summary, ascending.
-fn torques(summary: &Table) -> Vec<f64> {
-    let Some(Data::Float(values)) = summary.column("torque") else { return Vec::new() };
-    let mut values = values.clone();
-    values.sort_by(f64::total_cmp);
-    values.dedup();
-    values
 }
 
 /// Further keys of a summary, with the value of each that is nearest to 0: a pair that is off as little as is looked at.

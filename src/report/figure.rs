@@ -209,7 +209,8 @@ fn plain(column: &str) -> String {
     column.replace('_', " ")
 }
 
-fn sentence(column: &str) -> String {
+/// `peak_to_peak` as words with a capital.
+pub fn sentence(column: &str) -> String {
     let words = plain(column);
     let mut characters = words.chars();
     characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())

@@ -27,8 +27,9 @@ fn sheet(width: f64, height: f64) -> String {
     format!("@page{{size:{}pt {}pt;margin:0}}", points(width), points(height))
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
+    #[default]
     Line,
     Points,
     Bar,
@@ -105,14 +106,15 @@ pub struct Named {
 }
 
 /// How large a figure is as a file of its own.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Size {
+    #[default]
     Page,
     /// A column of a journal.
     Column,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plot {
     pub title: String,
     pub kind: Kind,
@@ -138,21 +140,7 @@ impl Plot {
     /// With nothing in it.
     #[must_use]
     pub fn new(title: &str, kind: Kind) -> Self {
-        Self {
-            title: title.to_owned(),
-            kind,
-            x: Axis::default(),
-            y: Axis::default(),
-            series: Vec::new(),
-            marks: Vec::new(),
-            named: Vec::new(),
-            categories: Vec::new(),
-            cells: None,
-            size: Size::Page,
-            length: None,
-            without_rows: Vec::new(),
-            lost: 0,
-        }
+        Self { title: title.to_owned(), kind, ..Self::default() }
     }
 
     /// What a reader would look for in vain; empty where that is nothing.

@@ -4,7 +4,7 @@
 //! Must not know: how anything is drawn.
 
 use super::defaults::Draw;
-use super::figure::Tables;
+use super::figure::{Tables, sentence};
 use super::plot::Kind;
 use super::spec::Spec;
 use declare::number::{significant, unit_symbol, with_unit};
@@ -23,7 +23,7 @@ pub fn specs(stage: &StageRecord, draw: &Draw<'_>, tables: Tables<'_>) -> Vec<Sp
     let Some(output) = columns.iter().filter(is_number).find(|column| outputs.contains(&column.name.as_str())) else {
         return Vec::new();
     };
-    let named = words(&output.name);
+    let named = sentence(&output.name);
     let shown = match unit_symbol(&output.unit) {
         unit if unit.is_empty() => named.clone(),
         unit => format!("{named}, {unit}"),
@@ -44,7 +44,7 @@ pub fn specs(stage: &StageRecord, draw: &Draw<'_>, tables: Tables<'_>) -> Vec<Sp
         .collect();
     let said = crossed.iter().filter_map(|column| {
         let value = significant(middle(&quantiles, &column.name)?, 6);
-        Some(format!("{} {}", words(&column.name), with_unit(&value, &column.unit)))
+        Some(format!("{} {}", sentence(&column.name), with_unit(&value, &column.unit)))
     });
     let said = said.collect::<Vec<_>>().join(", ");
     let said = if said.is_empty() { said } else { format!(" at {}", lower(&said)) };
@@ -58,7 +58,7 @@ pub fn specs(stage: &StageRecord, draw: &Draw<'_>, tables: Tables<'_>) -> Vec<Sp
     let mut found = vec![of_output(histogram, &at)];
     if let Some(over) = crossed.iter().find(|column| several(&quantiles, &column.name)) {
         let others: Vec<_> = at.iter().filter(|(name, _)| *name != over.name).cloned().collect();
-        let title = format!("Quantiles of {} over {}", lower(&named), lower(&words(&over.name)));
+        let title = format!("Quantiles of {} over {}", lower(&named), lower(&sentence(&over.name)));
         let bands = draw("quantiles", &title, Kind::Quantiles, "quantiles", &over.name, "value");
         let labels = labels(&quantiles);
         found.push(of_output(Spec { series: "share".to_owned(), y_label: shown, labels, ..bands }, &others));
@@ -86,7 +86,8 @@ fn texts<'t>(table: &'t Table, column: &str) -> Vec<&'t str> {
     }
 }
 
-fn values(table: &Table, column: &str) -> Vec<f64> {
+/// The different values of a column, ascending.
+pub fn values(table: &Table, column: &str) -> Vec<f64> {
     let Some(Data::Float(values)) = table.column(column) else { return Vec::new() };
     let mut values = values.clone();
     values.sort_by(f64::total_cmp);
@@ -107,13 +108,6 @@ fn middle(table: &Table, column: &str) -> Option<f64> {
 fn labels(quantiles: &Table) -> Vec<(String, String)> {
     let of = |share: &f64| (significant(*share, 6), with_unit(&significant(100.0 * share, 6), "%"));
     values(quantiles, "share").iter().map(of).collect()
-}
-
-/// `peak_to_peak` as words.
-fn words(name: &str) -> String {
-    let plain = name.replace('_', " ");
-    let mut characters = plain.chars();
-    characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
 }
 
 fn lower(text: &str) -> String {

@@ -9,7 +9,7 @@ use studygraph::table::data::Table;
 use studygraph::table::select::parse_conditions;
 
 /// What is drawn from which table; empty texts where nothing was said.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Spec {
     pub number: i64,
     pub name: String,
@@ -45,28 +45,13 @@ impl Spec {
     #[must_use]
     pub fn new(name: &str, title: &str, kind: Kind, table: &str, x: &str, y: &str) -> Self {
         Self {
-            number: 0,
             name: name.to_owned(),
             title: title.to_owned(),
             kind,
             tables: vec![table.to_owned()],
             x: x.to_owned(),
             y: vec![y.to_owned()],
-            value: String::new(),
-            isolines: false,
-            best: Best::None,
-            marked: Default::default(),
-            series: String::new(),
-            segments: String::new(),
-            length: String::new(),
-            reference: String::new(),
-            conditions: Vec::new(),
-            labels: Vec::new(),
-            x_label: String::new(),
-            y_label: String::new(),
-            is_log: [false, false],
-            size: Size::Page,
-            note: String::new(),
+            ..Self::default()
         }
     }
 

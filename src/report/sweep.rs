@@ -102,12 +102,16 @@ fn of_stage(stage: &StageRecord, tables: Tables<'_>) -> Result<Option<Sweep>, Re
     }))
 }
 
+/// The share of the variance of an output that a field explains.
+fn explained(shares: &Table, field: &str, output: &str) -> Result<Option<f64>, ReportError> {
+    let (fields, outputs, values) = (texts(shares, "field")?, texts(shares, "output")?, floats(shares, "share")?);
+    Ok((0..shares.rows()).find(|row| fields[*row] == field && outputs[*row] == output).map(|row| values[row]))
+}
+
 /// The two fields with a map that explain most of the objective.
 fn most_telling(shares: &Table, map: &Table, objective: &str) -> Result<Option<[String; 2]>, ReportError> {
     let share = |field: &str| -> Result<f64, ReportError> {
-        let (fields, outputs, values) = (texts(shares, "field")?, texts(shares, "output")?, floats(shares, "share")?);
-        let found = (0..shares.rows()).find(|row| fields[*row] == field && outputs[*row] == objective);
-        Ok(found.map_or(0.0, |row| if values[row].is_finite() { values[row] } else { 0.0 }))
+        Ok(explained(shares, field, objective)?.filter(|share| share.is_finite()).unwrap_or(0.0))
     };
     let mut found: Option<(f64, [String; 2])> = None;
     for (first, second) in texts(map, "first")?.iter().zip(texts(map, "second")?) {
@@ -159,9 +163,7 @@ fn main_effects(
     let mut names: Vec<&String> = of_objective.iter().map(|row| &fields[*row]).collect();
     names.dedup();
     let share = |field: &str| -> Result<String, ReportError> {
-        let (known, outputs, values) = (texts(shares, "field")?, texts(shares, "output")?, floats(shares, "share")?);
-        let found = (0..shares.rows()).find(|row| known[*row] == field && outputs[*row] == objective);
-        Ok(match found.map(|row| values[row]) {
+        Ok(match explained(shares, field, objective)? {
             Some(share) if share > 0.0 => format!("explains {} %", significant(100.0 * share, 2)),
             // Of drawn designs it is corrected for chance.
             Some(share) if share <= 0.0 => "explains no more than chance".to_owned(),
