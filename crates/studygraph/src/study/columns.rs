@@ -5,33 +5,14 @@
 //! value keeps its place in the file. Lines that do not count are left out by `conditions.rs`. Must not know: fields, what any is for.
 
 use super::characters::check_merged;
-use super::conditions::{Condition, average, chosen, is_error, is_mark, is_same, is_tooth, marks, missing, of_lines};
+use super::conditions::{
+    Cell, Column, Condition, Line, average, chosen, is_error, is_mark, is_same, is_tooth, marks, missing, of_lines,
+};
 use super::document::{Content, KeyValue, Node, parse};
 use super::words::{self, quote};
 use declare::error::{Diagnostic, Place, nearest};
 use declare::number::counted;
 use declare::units::{ForeignUnit, UnitError, foreign_unit, parse_unit, symbols, with_powers};
-
-/// One cell of a line.
-#[derive(Clone, Copy)]
-pub(super) struct Cell<'a> {
-    pub text: &'a str,
-    pub place: Place,
-}
-
-/// A column.
-pub(super) struct Column<'a> {
-    pub name: Cell<'a>,
-    /// None of a plain number.
-    unit: Option<&'a str>,
-    /// Whether its values say which lines are meant, and are no field.
-    pub is_key: bool,
-}
-
-/// A line of values.
-pub(super) struct Line<'a> {
-    pub cells: Vec<Cell<'a>>,
-}
 
 /// The fields that the text says, in the order in which it does, and the line that names the columns; of the lines only those that
 /// meet `conditions`.

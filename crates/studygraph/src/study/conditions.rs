@@ -3,7 +3,6 @@
 //! `NAME.csv[tooth=3]` names the lines with 3 in the column `tooth`, `NAME.csv[tooth=mean]` the average of all teeth. A line `# missing: ---`
 //! in the file leaves out every line with that mark. Must not know: fields.
 
-use super::columns::{Cell, Column, Line};
 use super::document::{Content, Node};
 use super::words::quote;
 use declare::error::{Diagnostic, Place};
@@ -48,6 +47,27 @@ const NINES: usize = 4;
 const SAME_PLACE: f64 = 1e-3;
 /// Most values in a message.
 const MOST_NAMED: usize = 10;
+
+/// One cell of a line.
+#[derive(Clone, Copy)]
+pub(super) struct Cell<'a> {
+    pub text: &'a str,
+    pub place: Place,
+}
+
+/// A column.
+pub(super) struct Column<'a> {
+    pub name: Cell<'a>,
+    /// None of a plain number.
+    pub unit: Option<&'a str>,
+    /// Whether its values say which lines are meant, and are no field.
+    pub is_key: bool,
+}
+
+/// A line of values.
+pub(super) struct Line<'a> {
+    pub cells: Vec<Cell<'a>>,
+}
 
 /// A column, and the value that it must have.
 #[derive(Clone, Debug, PartialEq, Eq)]
