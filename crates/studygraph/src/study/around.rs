@@ -2,7 +2,6 @@
 //!
 //! Must not know: any formula.
 
-use super::decode::plain;
 use super::document::{Content, KeyValue, Node};
 use super::notation::halves_of;
 use super::overrides::Stages;
@@ -90,6 +89,6 @@ pub fn is_number(shape: &Shape) -> bool {
 pub fn length(fields: &'static [Field], pair: &KeyValue) -> Option<(&'static str, f64)> {
     let is_length = |field: &&Field| matches!(field.shape, Shape::Quantity { dimension: LENGTH, .. });
     let field = fields.iter().find(|field| field.name == pair.key).filter(is_length)?;
-    let read = parse_quantity(plain(&pair.node)?).ok().filter(|read| read.dimension == LENGTH)?;
+    let read = parse_quantity(pair.node.plain()?).ok().filter(|read| read.dimension == LENGTH)?;
     Some((field.name, read.value))
 }

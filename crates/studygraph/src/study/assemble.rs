@@ -5,14 +5,15 @@
 use std::path::Path;
 
 use super::blame::Blame;
-use super::decode::Decoder;
+use super::decode::{Decoder, Reference};
 use super::document::{Content, KeyValue, Node as Tree};
+use super::files::{self, FILES};
 use super::identity::plain_name;
 use super::links::Draft;
 use super::overrides::Stages;
 use super::path::FieldPath;
 use super::words::{alternatives, quote};
-use super::{Changes, Node, Source, Study, cells, files, intervals, links, settings};
+use super::{Changes, Node, Source, Study, cells, intervals, links, settings};
 use crate::program::Program;
 use crate::stage::Kind;
 use crate::table::tolerance::Allowance;
@@ -53,8 +54,6 @@ pub static KEYS: &[Field] = &[
 
 /// The key of a study under which paths are given other values.
 pub const SET: &str = "set";
-/// The key of a study under which the texts of the files stand that its stages name.
-pub const FILES: &str = "files";
 
 /// A study of what is sound in the tree of a text, and everything that is wrong with the rest.
 pub fn examine(
@@ -212,6 +211,25 @@ fn drafts(
         drafts.push(draft);
     }
     Ok(drafts)
+}
+
+/// The stages that can be built, of all that are written.
+pub fn that_stand(pairs: &[KeyValue], program: &Program) -> Vec<Node> {
+    let belong = ranges_belong(program.kinds);
+    let stages = Stages { pairs, kinds: program.kinds, foreign: program.foreign, derived: program.derived };
+    let built = |pair: &KeyValue| {
+        let mut is_wrong = false;
+        let Draft { name, place, kind, record, references, .. } =
+            draft(pair, stages, &belong, None, |_| is_wrong = true);
+        let (kind, record) = (kind?, record?);
+        // No stage is built elsewhere before all that it refers to was found.
+        let all_there = references.iter().all(|Reference { stage, place, kinds, .. }| {
+            stages.any(stage, *place).is_ok_and(|(kind, _)| kinds.is_empty() || kinds.contains(&kind.name))
+        });
+        let stage = (!is_wrong && all_there).then(|| (kind.build)(&record).ok())??;
+        Some(Node { name, place, kind, record, stage })
+    };
+    pairs.iter().filter_map(built).collect()
 }
 
 /// One stage, as far as it can be read; what is wrong with it goes to `blame`. `above`: the nearest one above it whose kind can be.

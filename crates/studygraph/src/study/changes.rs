@@ -7,11 +7,11 @@
 
 use std::path::{Path, PathBuf};
 
+use super::added::{Added, Section};
 use super::assemble::{self, LONGEST_NAME, SET};
-use super::document::{Content, Node, Shift, parse};
+use super::document::{Content, Node, parse};
 use super::files::{self, Attached};
 use super::path::FieldPath;
-use super::place::place_at;
 use super::words::quote;
 use super::{LoadError, Study, stored};
 use crate::program::Program;
@@ -122,7 +122,7 @@ impl Whole {
     fn of(text: &str, path: &Path, program: &'static Program, settings: &Settings) -> Result<Self, LoadError> {
         let refused = |wrong: Diagnostic| LoadError::new(path, text.to_owned(), wrong);
         let mut root = parse(text).map_err(refused)?;
-        let mut added = Added { text: text.to_owned(), file: text.len() };
+        let mut added = Added::to(text);
         let mut changes = Changes::default();
         if let Some(root) = root.as_mut().filter(|root| root.is_mapping()) {
             changed(root, &mut added, path, settings, &mut changes)?;
@@ -143,7 +143,7 @@ impl Whole {
 /// As [`super::files`].
 pub(super) fn files(text: &str, path: &Path, program: &'static Program, settings: &Settings) -> Vec<PathBuf> {
     let Ok(Some(root)) = parse(text) else { return Vec::new() };
-    let mut added = Added { text: text.to_owned(), file: text.len() };
+    let mut added = Added::to(text);
     let mut changed = root.clone();
     let is_changed = self::changed(&mut changed, &mut added, path, settings, &mut Changes::default()).is_ok();
     let root = if is_changed { changed } else { root };
@@ -250,84 +250,6 @@ fn changed(
         own.retain(|own| own.key != STUDY);
     }
     section.merge(root).map_err(|wrong| changes.placed(LoadError::new(path, added.text.clone(), wrong)))
-}
-
-/// What was added behind the text of a file, so that it has places there.
-pub(super) struct Added {
-    pub text: String,
-    /// Bytes of the file itself.
-    file: usize,
-}
-
-impl Added {
-    fn behind(&self) -> &str {
-        &self.text[self.file..]
-    }
-}
-
-/// Entries under one key of a study that are written behind its text, in a document of their own.
-pub(super) struct Section<'a> {
-    added: &'a mut Added,
-    key: &'static str,
-    /// Where it begins, and how many lines are before it.
-    start: usize,
-    lines: usize,
-}
-
-impl<'a> Section<'a> {
-    pub(super) fn new(added: &'a mut Added, key: &'static str) -> Self {
-        if !added.text.ends_with(['\n', '\r']) {
-            added.text.push('\n');
-        }
-        let (start, lines) = (added.text.len(), place_at(&added.text, added.text.len(), 0).line - 1);
-        added.text += &format!("{key}:\n");
-        Self { added, key, start, lines }
-    }
-
-    pub(super) fn put(&mut self, text: &str) {
-        self.added.text += text;
-    }
-
-    /// Byte behind what was put.
-    pub(super) fn end(&self) -> usize {
-        self.added.text.len()
-    }
-
-    /// The line, counted from 1, in which the next byte stands.
-    pub(super) fn line(&self) -> usize {
-        self.lines + 1 + self.added.text[self.start..].matches('\n').count()
-    }
-
-    /// Puts the entries into the tree of the study.
-    ///
-    /// # Errors
-    /// When they are not YAML.
-    pub(super) fn merge(self, root: &mut Node) -> Result<(), Diagnostic> {
-        let shift = Shift { bytes: self.start, lines: self.lines };
-        let mut read = parse(&self.added.text[self.start..]).map_err(|mut wrong| {
-            wrong.place = wrong.place.map(|place| shift.moved(place));
-            wrong
-        })?;
-        let Some(Content::Mapping(sections)) = read.as_mut().map(|read| {
-            read.shift(shift);
-            &mut read.content
-        }) else {
-            return Ok(());
-        };
-        let Content::Mapping(pairs) = &mut root.content else { return Ok(()) };
-        match pairs.iter_mut().find(|pair| pair.key == self.key) {
-            None => pairs.append(sections),
-            // What is no mapping is refused with its own message.
-            Some(own) => {
-                if let (Content::Mapping(own), Some(Content::Mapping(more))) =
-                    (&mut own.node.content, sections.first_mut().map(|section| &mut section.node.content))
-                {
-                    own.append(more);
-                }
-            }
-        }
-        Ok(())
-    }
 }
 
 /// Path and value of one option, both sound by themselves.

@@ -8,7 +8,7 @@ use std::ops::Range;
 use super::assemble::KEYS;
 use super::describe;
 use super::document::{Content, KeyValue, Node, parse};
-use super::named::kind_of;
+use super::path::kind_of;
 use super::words;
 use crate::program::Program;
 use crate::stage::Kind;
@@ -93,7 +93,7 @@ pub fn at(text: &str, offset: usize, program: &Program) -> Option<Found> {
     match (Walk { root: &root, offset, program }).locate()? {
         Here::Key { key: "kind", kind: true, .. } => plain("kind: what the stage computes".to_owned()),
         Here::Key { fields, key, .. } => plain(describe::field(fields.iter().find(|field| field.name == key)?)),
-        Here::Stage(stage) => plain(of_kind(kind_of(stage, program)?)),
+        Here::Stage(stage) => plain(of_kind(kind_of(stage, program.kinds)?)),
         Here::Kind(name) => plain(of_kind(program.kind(name)?)),
         Here::Member(members, name) => plain(of_member(members.iter().find(|member| member.name == name)?)),
         Here::Own(field, name, beside) => naming(field, beside)?.found_name(name),
@@ -105,7 +105,7 @@ pub fn at(text: &str, offset: usize, program: &Program) -> Option<Found> {
             match shape {
                 Shape::Reference(_) => {
                     let stage = stages(&root).iter().find(|stage| stage.key == *word)?;
-                    let described = kind_of(stage, program).map_or_else(String::new, of_kind);
+                    let described = kind_of(stage, program.kinds).map_or_else(String::new, of_kind);
                     Some(Found { described, declared: Some(stage.place) })
                 }
                 Shape::Choice(choices) => {
@@ -208,7 +208,7 @@ fn of_shape(shape: &'static Shape, root: &Node, program: &Program) -> Vec<Offer>
         Shape::Reference(kinds) => {
             let fits = |kind: &&'static Kind| kinds.is_empty() || kinds.contains(&kind.name);
             let named = |stage: &KeyValue| {
-                let kind = kind_of(stage, program).filter(fits)?;
+                let kind = kind_of(stage, program.kinds).filter(fits)?;
                 Some(offer(&stage.key, kind.name, &stage.key))
             };
             stages(root).iter().filter_map(named).collect()
@@ -277,7 +277,7 @@ impl<'a> Walk<'a> {
             return Some(Here::Stage(stage));
         }
         let Content::Mapping(pairs) = &stage.node.content else { return None };
-        let kind = kind_of(stage, self.program);
+        let kind = kind_of(stage, self.program.kinds);
         let fields = kind.map_or(&[][..], |kind| kind.fields);
         self.in_fields(Beside { stage: Some(&stage.key), kind, fields, pairs, ..head }, true)
     }
@@ -299,7 +299,7 @@ impl<'a> Walk<'a> {
             let Content::Scalar { text, .. } = named else { return None };
             let other = stages(self.root).iter().find(|stage| stage.key == *text)?;
             let Content::Mapping(inside) = &pair.node.content else { return None };
-            let kind = kind_of(other, self.program)?;
+            let kind = kind_of(other, self.program.kinds)?;
             return self.in_fields(Beside { kind: Some(kind), fields: kind.fields, pairs: inside, ..beside }, false);
         }
         self.in_value(field, &field.shape, &pair.node, beside)

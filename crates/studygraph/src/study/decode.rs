@@ -3,17 +3,19 @@
 //! Every wrong input ends in one diagnostic: where, what was found, what was expected, and the nearest known name.
 //! Names of stages are gathered and checked later, when all stages are known. Must not know: what any field means.
 
+pub mod varied;
+
 use super::around::{self, is_number, length};
 use super::document::{Content, KeyValue, Node, nothing, parse};
 use super::overrides::{self, Stages};
-use super::quantity::interval::Interval;
+use super::place::mark;
+use super::quantity::interval::{Interval, is_single};
 use super::quantity::{Measure, any_quantity};
-use super::varied;
-use super::whole::integer;
+use super::scalar::{integer, not_a, scalar};
 use super::words::{self, alternatives, quote};
 use super::{files, unknown};
 use declare::error::{Diagnostic, Place, suggest};
-use declare::parameter::{Field, Member, Presence, Shape, Span};
+use declare::parameter::{Field, Member, Presence, Shape};
 use declare::record::{PlacedValue, Record, Value, Variant};
 use declare::units::parse_quantity;
 
@@ -32,7 +34,7 @@ pub struct Decoder<'a> {
     pub references: Vec<Reference>,
     /// The numbers that were printed rounded; all else has their middles alone.
     pub intervals: Vec<Interval>,
-    /// Whether they stand in the record at [`varied::mark`]s, by which their slots are found.
+    /// Whether they stand in the record at [`mark`]s, by which their slots are found.
     pub marks_intervals: bool,
     /// Whatever is wrong besides what was returned as an error.
     pub faults: Vec<Diagnostic>,
@@ -218,7 +220,7 @@ impl<'a> Decoder<'a> {
                 let measure = Measure::new(name, shape, example).counting(field, |unit| self.length_around(unit));
                 if let Some(interval) = if is_single(field) { measure.interval(node)? } else { None } {
                     let value = measure.number(interval.middle);
-                    let place = if self.marks_intervals { varied::mark(self.intervals.len()) } else { node.place };
+                    let place = if self.marks_intervals { mark(self.intervals.len()) } else { node.place };
                     self.intervals.push(interval);
                     return Ok(PlacedValue { value, place });
                 }
@@ -229,7 +231,7 @@ impl<'a> Decoder<'a> {
                 let read = integer(name, node, shape, (*minimum, *maximum), *multiple);
                 Value::Integer(read.map_err(|wrong| negative(field, node, wrong))?)
             }
-            Shape::Flag => match plain(node) {
+            Shape::Flag => match node.plain() {
                 Some("true" | "True" | "TRUE") => Value::Flag(true),
                 Some("false" | "False" | "FALSE") => Value::Flag(false),
                 _ => return Err(not_a(name, node, shape)),
@@ -371,17 +373,8 @@ impl<'a> Decoder<'a> {
 
 /// The remedy for a negative value, where the field has one.
 fn negative(field: &Field, node: &Node, wrong: Diagnostic) -> Diagnostic {
-    let is_negative = plain(node).is_some_and(|text| text.starts_with('-')) && wrong.help.is_none();
+    let is_negative = node.plain().is_some_and(|text| text.starts_with('-')) && wrong.help.is_none();
     if is_negative && !field.negative.is_empty() { wrong.help(field.negative) } else { wrong }
-}
-
-/// Whether each number that a field has stands by itself, in no list and on no axis.
-pub(super) fn is_single(field: &Field) -> bool {
-    let mut shape = &field.shape;
-    while let Shape::Map(item) = shape {
-        shape = item;
-    }
-    !matches!(shape, Shape::List(_)) && !matches!(field.span, Span::Axis { .. })
 }
 
 /// More than one member where one is expected; often its fields are only not indented far enough.
@@ -424,24 +417,4 @@ fn not_fields(node: &Node, fields: &[Field], others: &[&str], label: &str) -> Di
         format!("its fields are {}", names.join(", "))
     };
     Diagnostic::new(message).at(node.place).help(help)
-}
-
-fn not_a(name: &str, node: &Node, shape: &Shape) -> Diagnostic {
-    let message = format!("{} is {}; {} is expected", quote(name), node.describe(), words::expected(shape, None));
-    Diagnostic::new(message).at(node.place)
-}
-
-pub(super) fn scalar<'n>(name: &str, node: &'n Node, shape: &Shape) -> Result<&'n str, Diagnostic> {
-    match &node.content {
-        Content::Scalar { text, .. } => Ok(text),
-        _ => Err(not_a(name, node, shape)),
-    }
-}
-
-/// The text of a scalar without quotes.
-pub(super) fn plain(node: &Node) -> Option<&str> {
-    match &node.content {
-        Content::Scalar { text, quoted: false } => Some(text),
-        _ => None,
-    }
 }

@@ -50,9 +50,14 @@ pub struct KeyValue {
 }
 
 impl Node {
+    /// The text of a scalar without quotes.
+    pub fn plain(&self) -> Option<&str> {
+        if let Content::Scalar { text, quoted: false } = &self.content { Some(text) } else { None }
+    }
+
     /// Whether nothing was given: an empty value, `~` or `null`.
     pub fn is_null(&self) -> bool {
-        matches!(&self.content, Content::Scalar { text, quoted: false } if matches!(text.as_str(), "" | "~" | "null" | "Null" | "NULL"))
+        matches!(self.plain(), Some("" | "~" | "null" | "Null" | "NULL"))
     }
 
     pub fn is_mapping(&self) -> bool {
@@ -298,7 +303,7 @@ impl<'a> Tree<'a> {
                 }
                 Some((name, place, false)) => {
                     // A value that is not there has no place of its own.
-                    if matches!(&grown.node.content, Content::Scalar { text, quoted: false } if text.is_empty()) {
+                    if grown.node.plain() == Some("") {
                         grown.node.place = place;
                     }
                     pairs.push(KeyValue { key: name, place, node: grown.node });

@@ -7,8 +7,7 @@
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-use super::assemble::{FILES, SET};
-use super::changes::{Added, Section};
+use super::added::{Added, Section};
 use super::columns;
 use super::conditions::{Condition, file_and_conditions};
 use super::document::{Content, KeyValue, Node, nothing};
@@ -17,6 +16,8 @@ use super::{LoadError, read};
 use declare::error::{Diagnostic, Place};
 use declare::parameter::FILE;
 
+/// The key of a study under which the texts of the files stand that its stages name.
+pub const FILES: &str = "files";
 /// The key under which the line that names the columns of a file stands where the file was named: no study can write it.
 const READ: &str = "\0";
 /// Columns by which a file's lines are set in below its name, and from the edge.
@@ -177,7 +178,7 @@ pub(super) fn expanded(mut root: Node, text: &str) -> Result<Node, Diagnostic> {
         return Err(Diagnostic::new(message).at(held.node.place));
     };
     if let Content::Mapping(pairs) = &mut root.content
-        && let Some(stages) = pairs.iter_mut().find(|pair| pair.key != SET && pair.key == "stages")
+        && let Some(stages) = pairs.iter_mut().find(|pair| pair.key == "stages")
     {
         expand(&mut stages.node, &held, text)?;
     }

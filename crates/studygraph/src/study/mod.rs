@@ -1,8 +1,18 @@
 //! A study: one YAML file, read and checked, then never changed.
 //!
-//! `read` gives text, `document` a tree, `decode` records by the declared fields, `assemble` the study and its stages,
-//! `links` checks what they say of each other. Must not know: execution, the store.
+//! A file imports from its own layer and from those before it, and no two files import each other:
+//!
+//! 1. text: `place`, `words`, `characters`, `read` (the file), `document` (its tree), `notation` (texts of numbers);
+//! 2. texts added to it: `columns`, `conditions` (CSV), `added`, `files`, `stored`;
+//! 3. stages as they are written: `path`, `overrides`, and the messages of `around`, `unknown`;
+//! 4. values: `scalar`, `quantity`, `spread`;
+//! 5. records by the declared fields: `decode`, with the fields of other stages in `decode/varied`;
+//! 6. a study: `assemble`, above its checks in `links`, `intervals`, `cells`;
+//! 7. what is set from outside: `changes`.
+//!
+//! `schema`, `describe` and `cursor` show it to editors. Must not know: execution, the store.
 
+mod added;
 mod around;
 mod assemble;
 mod blame;
@@ -29,6 +39,7 @@ mod place;
 pub mod profile;
 mod quantity;
 mod read;
+mod scalar;
 pub mod schema;
 pub mod settings;
 mod spread;
@@ -37,9 +48,7 @@ mod structure;
 #[cfg(test)]
 mod tests;
 mod unknown;
-mod varied;
 mod whereabouts;
-mod whole;
 mod words;
 
 use std::fmt;

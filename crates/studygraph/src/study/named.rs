@@ -1,50 +1,15 @@
 //! What the stages of a study have, by name: tables, columns, and the values of keys that are known before anything runs.
 //!
-//! For those who complete and explain words; a study that is being written is none yet, so that stages stand here whatever is
-//! wrong with the others. Must not know: where a word stands, who asks.
+//! Must not know: where a word stands, who asks.
 
 use std::collections::BTreeMap;
 
 use super::Node;
-use super::assemble::{draft, ranges_belong};
-use super::document::{Content, KeyValue};
-use super::links::Draft;
-use super::overrides::Stages;
-use crate::program::Program;
-use crate::stage::Kind;
 use crate::table::data::Cell;
 use crate::table::schema::Schema;
 
 /// Stages that give each other the values of a key, at most: in a text that is no study they may ask in a circle.
 const DEEPEST: usize = 8;
-
-/// The stages that can be built, of all that are written.
-pub(super) fn that_stand(pairs: &[KeyValue], program: &Program) -> Vec<Node> {
-    let belong = ranges_belong(program.kinds);
-    let stages = Stages { pairs, kinds: program.kinds, foreign: program.foreign, derived: program.derived };
-    let built = |pair: &KeyValue| {
-        let mut is_wrong = false;
-        let Draft { name, place, kind, record, references, .. } =
-            draft(pair, stages, &belong, None, |_| is_wrong = true);
-        let (kind, record) = (kind?, record?);
-        // No stage is built elsewhere before all that it refers to was found.
-        let is_there = |stage: &str, kinds: &[&str]| {
-            let kind = pairs.iter().find(|pair| pair.key == stage).and_then(|pair| kind_of(pair, program));
-            kind.is_some_and(|kind| kinds.is_empty() || kinds.contains(&kind.name))
-        };
-        let all_there = references.iter().all(|reference| is_there(&reference.stage, reference.kinds));
-        let stage = (!is_wrong && all_there).then(|| (kind.build)(&record).ok())??;
-        Some(Node { name, place, kind, record, stage })
-    };
-    pairs.iter().filter_map(built).collect()
-}
-
-/// The kind that a stage is of, as it is written.
-pub(super) fn kind_of(stage: &KeyValue, program: &Program) -> Option<&'static Kind> {
-    let Content::Mapping(pairs) = &stage.node.content else { return None };
-    let Content::Scalar { text, .. } = &pairs.iter().find(|pair| pair.key == "kind")?.node.content else { return None };
-    program.kind(text)
-}
 
 /// The tables that a stage can give.
 #[must_use]

@@ -4,12 +4,33 @@
 //! and programs differ to this day, so what only some of them take for the same number is refused, never guessed. Must not
 //! know: what a number is for.
 
-pub use super::quantity::interval::without_sign;
-use super::quantity::interval::{halves, middle};
 use declare::units::split_quantity;
 
+/// As which a half-width may be marked.
+const SIGNS: [&str; 4] = ["±", "+/-", "+-", r"\pm"];
 /// Of a comma in a number.
 pub const COMMA: &str = "a decimal point, not a comma, and nothing parts thousands";
+
+/// A tolerance without its sign, which may be left out where nothing stands before it.
+pub fn without_sign(text: &str) -> &str {
+    let text = text.trim();
+    SIGNS.iter().find_map(|sign| text.strip_prefix(sign)).unwrap_or(text).trim()
+}
+
+/// What stands before and behind the sign; none where there is none.
+pub fn halves(text: &str) -> Option<(&str, &str)> {
+    let first = SIGNS.iter().filter_map(|sign| Some((text.find(sign)?, sign.len())));
+    let (at, length) = first.min()?;
+    Some((text[..at].trim(), text[at + length..].trim()))
+}
+
+/// The middle with its unit, which may stand behind both.
+pub fn middle(text: &str) -> Option<String> {
+    let (middle, half) = halves(text)?;
+    let (number, unit) = split_quantity(half);
+    let is_behind_both = split_quantity(middle).1.is_empty() && !number.is_empty() && !unit.is_empty();
+    Some(if is_behind_both { format!("{middle} {unit}") } else { middle.to_owned() })
+}
 
 /// What to write instead of a number with commas, which may stand for a point or part thousands: both where nothing tells, the
 /// one first that is nearer to what the field usually has, as `distance` says.
@@ -184,6 +205,25 @@ fn in_another_base(word: &str) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn both_halves_have_a_unit_of_their_own_or_share_one() {
+        for (text, expected) in [
+            ("0.504 ± 0.0005", Some("0.504")),
+            ("0.504±0.0005", Some("0.504")),
+            ("0.504 +- 0.0005", Some("0.504")),
+            ("-0.504 +/- 0.0005", Some("-0.504")),
+            ("5.05 ± 0.005 mm", Some("5.05 mm")),
+            ("5.05 mm ± 5 um", Some("5.05 mm")),
+            ("5 % ± 0.5 %", Some("5 %")),
+            (r"0.504 \pm 0.0005", Some("0.504")),
+            ("5.05 mm", None),
+            ("1e+3", None),
+        ] {
+            assert_eq!(middle(text).as_deref(), expected, "{text}");
+        }
+        assert_eq!((without_sign("± 2 um"), without_sign(" +-2 um"), without_sign("2 um")), ("2 um", "2 um", "2 um"));
+    }
 
     #[test]
     fn other_notations_are_told_in_decimal_digits() {

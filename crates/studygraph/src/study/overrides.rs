@@ -5,6 +5,7 @@
 
 use super::document::{Content, KeyValue, Node};
 use super::files;
+use super::path::kind_of;
 use super::words::quote;
 use crate::program::{Derived, Foreign};
 use crate::stage::Kind;
@@ -43,16 +44,10 @@ impl<'a> Stages<'a> {
             let names = self.pairs.iter().map(|pair| pair.key.as_str());
             Diagnostic::new(format!("there is no stage {}", quote(name))).at(place).help(suggest(name, names))
         })?;
-        let own = if let Content::Mapping(pairs) = &stage.node.content { pairs.as_slice() } else { &[] };
-        let word = own.iter().find(|pair| pair.key == "kind").map(|pair| &pair.node.content);
-        let kind = match word {
-            Some(Content::Scalar { text, .. }) => self.kinds.iter().find(|kind| kind.name == text),
-            _ => None,
-        };
-        let Some(kind) = kind else {
-            return Err(Diagnostic::new(format!("stage {} has no kind that is known", quote(name))).at(stage.place));
-        };
-        Ok((kind, stage))
+        match kind_of(stage, self.kinds) {
+            Some(kind) => Ok((kind, stage)),
+            None => Err(Diagnostic::new(format!("stage {} has no kind that is known", quote(name))).at(stage.place)),
+        }
     }
 
     /// The tree of the stage `name`, which is named at `place`, with `replaced` in the place of its own fields.

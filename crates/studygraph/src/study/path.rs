@@ -320,7 +320,8 @@ impl Step {
     }
 }
 
-fn kind_of(stage: &KeyValue, kinds: &[&'static Kind]) -> Option<&'static Kind> {
+/// The kind of a stage, as it is written.
+pub fn kind_of(stage: &KeyValue, kinds: &[&'static Kind]) -> Option<&'static Kind> {
     let Content::Mapping(pairs) = &stage.node.content else { return None };
     let Content::Scalar { text, .. } = &pairs.iter().find(|pair| pair.key == "kind")?.node.content else { return None };
     kinds.iter().copied().find(|kind| kind.name == text)

@@ -14,3 +14,8 @@ pub fn place_at(text: &str, offset: usize, length: usize) -> Place {
     let column = before[line..].chars().count() + 1 - marks;
     Place { line: breaks + 1, column, offset, length }
 }
+
+/// A place that no text has: what is written once and used twice stands twice at one place.
+pub fn mark(index: usize) -> Place {
+    Place { line: usize::MAX, column: index, offset: usize::MAX, length: 0 }
+}

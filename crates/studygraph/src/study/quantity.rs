@@ -6,9 +6,9 @@
 pub mod interval;
 mod unreadable;
 
-use super::decode::scalar;
 use super::document::{Content, Node};
 use super::notation;
+use super::scalar::scalar;
 use super::unknown;
 use super::words::{self, quote};
 use declare::error::Diagnostic;
@@ -104,7 +104,7 @@ impl<'a> Measure<'a> {
             let message = format!("{shown} is text in quotes; {} is expected", self.expected());
             return Err(Diagnostic::new(message).help("write the number without quotes"));
         }
-        if interval::halves(text).is_some() {
+        if notation::halves(text).is_some() {
             return Err(self.no_interval(text));
         }
         if let Some(help) = notation::help(text).or_else(|| interval::elsewhere(text)) {
@@ -144,7 +144,7 @@ impl<'a> Measure<'a> {
 
     /// How far a number, or the middle of an interval, is from the usual one, as the logarithm of their ratio: without end where it cannot stand here.
     pub fn distance(&self, text: &str) -> f64 {
-        let middle = interval::middle(text);
+        let middle = notation::middle(text);
         let text = middle.as_deref().unwrap_or(text);
         let si = |text: &str| {
             parse_quantity(text).ok().filter(|read| self.dimension.is_none_or(|own| own == read.dimension))

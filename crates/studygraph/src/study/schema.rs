@@ -8,9 +8,10 @@ mod shared;
 
 use serde_json::{Map, Value, json};
 
-use super::assemble::{FILES, KEYS, SET};
-use super::decode::is_single;
+use super::assemble::{KEYS, SET};
 use super::document::{Content, Node, parse};
+use super::files::FILES;
+use super::quantity::interval::is_single;
 use super::words;
 use crate::stage::Kind;
 use declare::parameter::{Field, Member, Presence, Shape, Span};

@@ -4,10 +4,10 @@
 //! What is not stated is the value that the study has: a tolerance lies about it. Must not know: what a class allows, how
 //! values are drawn.
 
-use super::decode::scalar;
 use super::document::{Content, KeyValue, Node};
+use super::notation::{halves, without_sign};
 use super::quantity::Measure;
-use super::quantity::interval::{halves, without_sign};
+use super::scalar::scalar;
 use super::words::{number, quote};
 use declare::error::{Diagnostic, Place, suggest};
 use declare::parameter::Shape;

@@ -4,9 +4,8 @@
 
 use super::around;
 use super::document::{Content, KeyValue, Node};
-use super::notation;
+use super::notation::{self, halves};
 use super::overrides::Stages;
-use super::quantity::interval::halves;
 use super::whereabouts::{self, Counted};
 use super::words::{alternatives, quote};
 use crate::program::Foreign;

@@ -7,6 +7,7 @@ use std::ops::Range;
 
 use super::{Beside, Found, Offer, Offers, of_kind, offer};
 use crate::program::{Names, Program};
+use crate::study::assemble::that_stand;
 use crate::study::document::{Content, KeyValue, Node as Tree};
 use crate::study::{Node, named};
 use crate::table::data::Cell;
@@ -51,7 +52,7 @@ impl<'a> Naming<'a> {
             Names::Columns { table } => beside.fields.iter().any(|field| field.name == *table),
             _ => true,
         })?;
-        Some(Self { names, beside, nodes: named::that_stand(all, program), all })
+        Some(Self { names, beside, nodes: that_stand(all, program), all })
     }
 
     /// What could stand at `offset` of a text in the place of the word around it; `node` is the value there.

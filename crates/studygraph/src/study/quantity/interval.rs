@@ -3,19 +3,16 @@
 //! The middle is the number, read as it would be by itself; half the width says what else it may be. Must not know: what is
 //! done with it.
 
-use super::super::decode::is_single;
 use super::super::document::{Content, Node};
-use super::super::notation;
+use super::super::notation::{self, halves, middle};
 use super::super::words::{self, quote};
 use super::Measure;
 use declare::error::{Diagnostic, Place};
-use declare::parameter::Field;
+use declare::parameter::{Field, Shape, Span};
 use declare::record::Record;
 use declare::record::varied::{Axis, Form, Slot, Spread, Values, Within};
 use declare::units::{Dimension, LENGTH, RATIO, foreign_quantity, parse_quantity, split_quantity};
 
-/// As which a half-width may be marked.
-const SIGNS: [&str; 4] = ["±", "+/-", "+-", r"\pm"];
 /// What stands for it elsewhere: markup, escapes outside of double quotes, other strokes, words.
 const OTHER_SIGNS: [&str; 15] = [
     r"$\pm$", r"\u00b1", r"\u00B1", r"\xb1", "&plusmn;", "&pm;", "&#177;", "(±)", "(+/-)", "+/−", "+−", "-+", "−+",
@@ -66,17 +63,13 @@ impl Interval {
     }
 }
 
-/// A tolerance without its sign, which may be left out where nothing stands before it.
-pub fn without_sign(text: &str) -> &str {
-    let text = text.trim();
-    SIGNS.iter().find_map(|sign| text.strip_prefix(sign)).unwrap_or(text).trim()
-}
-
-/// What stands before and behind the sign; none where there is none.
-pub fn halves(text: &str) -> Option<(&str, &str)> {
-    let first = SIGNS.iter().filter_map(|sign| Some((text.find(sign)?, sign.len())));
-    let (at, length) = first.min()?;
-    Some((text[..at].trim(), text[at + length..].trim()))
+/// Whether each number that a field has stands by itself, in no list and on no axis.
+pub fn is_single(field: &Field) -> bool {
+    let mut shape = &field.shape;
+    while let Shape::Map(item) = shape {
+        shape = item;
+    }
+    !matches!(shape, Shape::List(_)) && !matches!(field.span, Span::Axis { .. })
 }
 
 /// What an interval in another notation is here; none where a text is no such interval.
@@ -102,14 +95,6 @@ pub(super) fn elsewhere(text: &str) -> Option<String> {
     is_sided.then(|| {
         "an interval is as wide to both sides: `0.504 ± 0.0005` is its middle and half of its width".to_owned()
     })
-}
-
-/// The middle with its unit, which may stand behind both.
-pub fn middle(text: &str) -> Option<String> {
-    let (middle, half) = halves(text)?;
-    let (number, unit) = split_quantity(half);
-    let is_behind_both = split_quantity(middle).1.is_empty() && !number.is_empty() && !unit.is_empty();
-    Some(if is_behind_both { format!("{middle} {unit}") } else { middle.to_owned() })
 }
 
 /// A value of a study without what it may be off by.
@@ -347,26 +332,6 @@ impl Measure<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use declare::parameter::Shape;
-
-    #[test]
-    fn both_halves_have_a_unit_of_their_own_or_share_one() {
-        for (text, expected) in [
-            ("0.504 ± 0.0005", Some("0.504")),
-            ("0.504±0.0005", Some("0.504")),
-            ("0.504 +- 0.0005", Some("0.504")),
-            ("-0.504 +/- 0.0005", Some("-0.504")),
-            ("5.05 ± 0.005 mm", Some("5.05 mm")),
-            ("5.05 mm ± 5 um", Some("5.05 mm")),
-            ("5 % ± 0.5 %", Some("5 %")),
-            (r"0.504 \pm 0.0005", Some("0.504")),
-            ("5.05 mm", None),
-            ("1e+3", None),
-        ] {
-            assert_eq!(middle(text).as_deref(), expected, "{text}");
-        }
-        assert_eq!((without_sign("± 2 um"), without_sign(" +-2 um"), without_sign("2 um")), ("2 um", "2 um", "2 um"));
-    }
 
     #[test]
     fn an_interval_is_its_middle_as_it_is_by_itself() {

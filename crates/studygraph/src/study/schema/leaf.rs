@@ -6,9 +6,9 @@
 use serde_json::{Value, json};
 
 use crate::study::assemble::NAME_PATTERN;
+use crate::study::decode::varied::COLUMN_PATTERN;
 use crate::study::identity::MOST;
 use crate::study::quantity::MOST_POINTS;
-use crate::study::varied::COLUMN_PATTERN;
 use crate::study::words;
 use declare::units::{ANGLE, Dimension, FORCE, LENGTH, RATIO, TIME, in_unit, parse_quantity, parse_unit, symbols};
 

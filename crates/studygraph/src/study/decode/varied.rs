@@ -4,16 +4,16 @@
 //! in the record is its slot. So whatever a stage can be told can be varied, with the unit and the range that its own
 //! declaration has. Must not know: what any field means, which combinations of values are taken.
 
-use super::decode::{Decoder, Reference, scalar};
-use super::document::{Content, KeyValue, Node};
-use super::overrides::Stages;
-use super::path::FieldPath;
-use super::quantity::Measure;
-use super::quantity::interval::without_interval;
-use super::spread;
-use super::unknown;
-use super::whole::integer;
-use super::words::{alternatives, expected, quote};
+use super::{Decoder, Reference};
+use crate::study::document::{Content, KeyValue, Node};
+use crate::study::overrides::Stages;
+use crate::study::path::FieldPath;
+use crate::study::place::mark;
+use crate::study::quantity::Measure;
+use crate::study::quantity::interval::without_interval;
+use crate::study::scalar::{integer, scalar};
+use crate::study::words::{alternatives, expected, quote};
+use crate::study::{spread, unknown};
 use declare::error::{Diagnostic, Place};
 use declare::parameter::Shape;
 use declare::record::Record;
@@ -90,11 +90,6 @@ pub fn varied(stages: Stages, of: &Reference, pairs: &[KeyValue]) -> Result<Vari
         found.axes.push(axis);
     }
     Ok(found)
-}
-
-/// A place that no text has: what is written once and used twice stands twice at one place.
-pub fn mark(index: usize) -> Place {
-    Place { line: usize::MAX, column: index, offset: usize::MAX, length: 0 }
 }
 
 /// Gathers a stage after all that it reads; `open` are those that are being gathered.

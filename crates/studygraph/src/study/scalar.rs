@@ -1,14 +1,30 @@
-//! Whole numbers of a study.
+//! Scalars of a study: the text of one, and whole numbers.
 //!
 //! Must not know: what is counted.
 
-use super::decode::{plain, scalar};
-use super::document::Node;
+use super::document::{Content, Node};
 use super::notation;
 use super::words::{self, alternatives, quote};
 use declare::error::Diagnostic;
 use declare::parameter::Shape;
 use declare::units::{parse_unit, split_quantity};
+
+/// A value of another shape than that of the field called `name`.
+pub fn not_a(name: &str, node: &Node, shape: &Shape) -> Diagnostic {
+    let message = format!("{} is {}; {} is expected", quote(name), node.describe(), words::expected(shape, None));
+    Diagnostic::new(message).at(node.place)
+}
+
+/// The text of the field called `name`.
+///
+/// # Errors
+/// A list or a mapping.
+pub fn scalar<'n>(name: &str, node: &'n Node, shape: &Shape) -> Result<&'n str, Diagnostic> {
+    match &node.content {
+        Content::Scalar { text, .. } => Ok(text),
+        _ => Err(not_a(name, node, shape)),
+    }
+}
 
 /// Reads a whole number of a field called `name`, within its bounds.
 ///
@@ -25,10 +41,10 @@ pub fn integer(
     let shown = quote(text);
     let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
     let other = notation::help(text);
-    if plain(node).is_none() || other.is_some() || !is_digits(digits) {
+    if node.plain().is_none() || other.is_some() || !is_digits(digits) {
         let (number, unit) = split_quantity(text);
         let has_unit = !number.is_empty() && !unit.is_empty() && parse_unit(unit).is_ok();
-        let how = match plain(node) {
+        let how = match node.plain() {
             None => "without quotes",
             Some(_) if has_unit && other.is_none() => "without a unit",
             Some(_) => "in digits",
