@@ -10,7 +10,8 @@ use crate::gear::geometry::Gear;
 use crate::gear::geometry::outline::Outline as Profile;
 use crate::gear::geometry::outline::curve::{Curve, OutlinePart, Segment};
 use crate::gear::geometry::outline::roots::Toe;
-use crate::gear::geometry::root::{Piece, Root};
+use crate::gear::geometry::root::Root;
+use crate::gear::geometry::root_piece::Piece;
 
 /// Samples of a curve from which its length and direction are taken.
 const SAMPLES: usize = 400;

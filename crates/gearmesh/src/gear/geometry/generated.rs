@@ -15,7 +15,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::error::{GeometryError, Millimetres, Plain, Problem};
 use super::pinion_cutter::PinionCutter;
-use super::root::Piece;
+use super::root_piece::Piece;
 use super::trochoid::Trochoid;
 use super::{Gear, Specification};
 use crate::numeric::crossing;

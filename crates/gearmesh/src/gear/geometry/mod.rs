@@ -12,6 +12,7 @@ pub mod outline;
 pub mod pair;
 pub mod pinion_cutter;
 pub mod root;
+pub mod root_piece;
 pub mod sliding;
 pub mod thickness;
 pub mod tip_path;

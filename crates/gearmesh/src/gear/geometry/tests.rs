@@ -387,7 +387,7 @@ fn sections_join_and_their_rates_are_derivatives() {
 /// An arc tangent to the flank and to the root circle: tangency by its own definition, not by the construction.
 #[test]
 fn the_circular_fillet_is_tangent() {
-    use super::root::Piece;
+    use super::root_piece::Piece;
     for teeth in [19, 48, 100] {
         let gear = gear(teeth, 3.0, 0.0);
         let root = gear.root(RootShape::CircularFillet).unwrap();

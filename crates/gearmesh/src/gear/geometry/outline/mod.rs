@@ -16,7 +16,8 @@ use std::sync::Arc as Shared;
 
 use super::Gear;
 use super::error::{GeometryError, Millimetres, Problem};
-use super::root::{Piece, Root};
+use super::root::Root;
+use super::root_piece::Piece;
 use curve::{Curve, OutlinePart, Relief, Segment};
 use roots::Toe;
 use tip::Tip;

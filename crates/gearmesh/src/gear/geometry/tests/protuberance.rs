@@ -4,7 +4,7 @@ use super::cutter::{distance_to_swept, distance_to_trapezoid};
 use super::*;
 use crate::gear::geometry::outline::Outline;
 use crate::gear::geometry::outline::roots::Toe;
-use crate::gear::geometry::root::Piece;
+use crate::gear::geometry::root_piece::Piece;
 use crate::gear::geometry::trochoid::full_round;
 
 /// One tooth of the rack against the finished tooth: the union of the rounded tip with the straight sides of the protuberance, and
