@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use super::tip::{Ended, NearTips, Tips};
+use super::tip::{Ended, FarLaw, NearTips, Tips};
 use crate::gear::geometry::GearPair;
 use crate::gear::material::{Material, Plane};
 use crate::numeric::lambert::larger_root;
@@ -165,6 +165,10 @@ impl<'a> InSeries<'a> {
         series
     }
 
+    fn far_law(&self) -> FarLaw {
+        FarLaw { compliance: self.compliance, constant: self.law.constant, rate: self.law.rate }
+    }
+
     /// The penetration at a load per width.
     #[must_use]
     pub fn penetration(&self, load: f64) -> f64 {
@@ -191,7 +195,7 @@ impl<'a> InSeries<'a> {
     #[inline]
     pub fn rates_at(&self, load: f64, log: f64) -> ([f64; 3], bool) {
         if let Some(tips) = &self.tips {
-            return tips.at_load(self, load, log);
+            return tips.at_load(self.far_law(), load, log);
         }
         let Self { law: Logarithmic { constant, rate, .. }, compliance, .. } = *self;
         if rate * (log + 1.0) > constant {
@@ -208,7 +212,7 @@ impl<'a> InSeries<'a> {
         let (load, slope) = self.load_without_tips(penetration);
         match &self.tips {
             None => (load, slope),
-            Some(tips) => tips.load(self, penetration, load),
+            Some(tips) => tips.load(self.far_law(), penetration, load),
         }
     }
 

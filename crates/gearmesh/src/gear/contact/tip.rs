@@ -7,7 +7,6 @@
 use std::cell::OnceCell;
 use std::fmt::Debug;
 
-use super::flattening::InSeries;
 use super::rounding::Rounding;
 use super::wedge::{Rates, Spread, Wedge};
 
@@ -225,6 +224,14 @@ impl<'a> Known<'a> {
     }
 }
 
+/// C, α and β of a law where tips are far.
+#[derive(Clone, Copy)]
+pub(super) struct FarLaw {
+    pub compliance: f64,
+    pub constant: f64,
+    pub rate: f64,
+}
+
 /// The tips of a law, prepared for many loads.
 #[derive(Clone, Debug)]
 pub(super) struct NearTips<'a> {
@@ -262,10 +269,10 @@ impl<'a> NearTips<'a> {
     }
 
     /// w/p at a load per width with the logarithm `log`, and its slope over ln p.
-    fn whole(&self, series: &InSeries, load: f64, log: f64) -> [f64; 2] {
-        let (rate, Known { tips, half_width, distances }) = (series.law.rate, self.tips());
+    fn whole(&self, law: FarLaw, load: f64, log: f64) -> [f64; 2] {
+        let (rate, Known { tips, half_width, distances }) = (law.rate, self.tips());
         let (width, log_width) = (tips.half_width * load.sqrt(), half_width + 0.5 * log);
-        let start = [self.compliance + series.law.constant - rate * log, -rate];
+        let start = [self.compliance + law.constant - rate * log, -rate];
         tips.corners.iter().zip(distances).fold(start, |[sum, slope], (corner, log_distance)| {
             let place = corner.distance / width;
             let ([more, by_place], turned) =
@@ -279,23 +286,23 @@ impl<'a> NearTips<'a> {
     /// The penetration at a load per width > 0 whose logarithm is `log`, its slope, the slope of that without what is known of
     /// tips that are near, and whether one is.
     #[inline]
-    pub(super) fn at_load(&self, series: &InSeries, load: f64, log: f64) -> ([f64; 3], bool) {
-        let rate = series.law.rate;
+    pub(super) fn at_load(&self, law: FarLaw, load: f64, log: f64) -> ([f64; 3], bool) {
+        let rate = law.rate;
         if load < self.far.last {
             let rest = self.far.rest * load;
-            let total = series.compliance + series.law.constant - rate * log + rest;
+            let total = law.compliance + law.constant - rate * log + rest;
             return ([load * total, total - rate + rest, (2.0 * rest - rate) / load], false);
         }
         let (held, log) =
             if load > self.far.largest { (self.far.largest, libm::log(self.far.largest)) } else { (load, log) };
-        let [total, slope] = self.whole(series, held, log);
+        let [total, slope] = self.whole(law, held, log);
         ([held * total + (load - held) * (total + slope), total + slope, -rate / load], true)
     }
 
     /// Load per width and its slope at the penetration w > 0, where without the tips they would be `load` and its own.
-    pub(super) fn load(&self, series: &InSeries, penetration: f64, load: f64) -> (f64, f64) {
+    pub(super) fn load(&self, law: FarLaw, penetration: f64, load: f64) -> (f64, f64) {
         let Far { rest, last: last_far, largest, .. } = self.far;
-        let rate = series.law.rate;
+        let rate = law.rate;
         if load < last_far {
             // What grows with the load is small: two steps of Newton's method.
             let (start, mut load) = (load, load);
@@ -311,11 +318,11 @@ impl<'a> NearTips<'a> {
         let wanted = libm::log(penetration);
         for _ in 0..STEPS {
             let log = libm::log(load);
-            let [total, slope] = self.whole(series, load, log);
+            let [total, slope] = self.whole(law, load, log);
             let step = (wanted - log - libm::log(total)) / (1.0 + slope / total);
             let next = load * libm::exp(step);
             if next >= largest {
-                let [total, slope] = self.whole(series, largest, libm::log(largest));
+                let [total, slope] = self.whole(law, largest, libm::log(largest));
                 let beyond = penetration - largest * total;
                 if beyond >= 0.0 {
                     return (largest + beyond / (total + slope), 1.0 / (total + slope));
@@ -326,7 +333,7 @@ impl<'a> NearTips<'a> {
                 break;
             }
         }
-        let [total, slope] = self.whole(series, load, libm::log(load));
+        let [total, slope] = self.whole(law, load, libm::log(load));
         (penetration / total, 1.0 / (total + slope))
     }
 }
@@ -334,7 +341,7 @@ impl<'a> NearTips<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gear::contact::flattening::Logarithmic;
+    use crate::gear::contact::flattening::{InSeries, Logarithmic};
     use crate::gear::fixtures::STEELS;
 
     fn series(shapes: &[Shape; 2], distances: [f64; 2]) -> InSeries<'_> {
