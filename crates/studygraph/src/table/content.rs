@@ -2,7 +2,7 @@
 //!
 //! Must not know: where the pieces come from.
 
-use super::data::Data;
+use super::data::{Data, Table};
 use super::schema::{Column, Schema, Type};
 use declare::digest::{Digest, Writer};
 
@@ -53,10 +53,22 @@ impl Content {
     }
 }
 
+impl Table {
+    /// The digest of schema and values, without volatile columns.
+    #[must_use]
+    pub fn content_hash(&self) -> Digest {
+        let mut content = Content::new(self.schema(), self.rows());
+        for (column, data) in self.schema().columns.iter().zip(self.columns()).filter(|(column, _)| !column.volatile) {
+            content.begin(column);
+            content.add(data);
+        }
+        content.finish()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::data::Table;
 
     /// Tier: second way; the digest of a table is that of its pieces, wherever it is cut.
     #[test]

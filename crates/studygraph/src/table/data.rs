@@ -5,10 +5,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::content::Content;
 use super::derived::Derived;
 use super::schema::{Column, Schema, Type};
-use declare::digest::Digest;
 
 /// The values of one column.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -396,17 +394,6 @@ impl Table {
             Some(Data::Text(values)) => values,
             _ => panic!("table `{}` has no column of words `{name}`", self.schema.name),
         }
-    }
-
-    /// The digest of schema and values, without volatile columns.
-    #[must_use]
-    pub fn content_hash(&self) -> Digest {
-        let mut content = Content::new(&self.schema, self.rows);
-        for (column, data) in self.schema.columns.iter().zip(&self.columns).filter(|(column, _)| !column.volatile) {
-            content.begin(column);
-            content.add(data);
-        }
-        content.finish()
     }
 }
 

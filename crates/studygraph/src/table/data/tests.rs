@@ -53,7 +53,7 @@ fn the_digest_tells_tables_apart_by_all_they_say() {
         others.push(table("summary", columns(), rows));
     }
     others.push(table("summary", columns(), rows()[..1].to_vec()));
-    let mut digests: Vec<Digest> = others.iter().map(Table::content_hash).collect();
+    let mut digests: Vec<_> = others.iter().map(Table::content_hash).collect();
     digests.push(base);
     for (at, digest) in digests.iter().enumerate() {
         assert!(!digests[..at].contains(digest), "table {at} has the digest of another");
