@@ -174,7 +174,7 @@ fn pairs(
     options: &Options<'_>,
     comparison: &mut Comparison,
 ) -> Result<Vec<ManifestPair>, String> {
-    let (mut old, new) = (read(before, after, options)?, read(after, before, options)?);
+    let (mut old, new) = (read(before, after, options.studies)?, read(after, before, options.studies)?);
     if let (true, true, [old], [new]) = (before.is_single(), after.is_single(), &mut old[..], &new[..]) {
         // Two folders of one study each are meant for each other, whatever they are called.
         old.0.clone_from(&new.0);

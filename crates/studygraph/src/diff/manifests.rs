@@ -2,27 +2,26 @@
 //!
 //! Must not know: what is compared.
 
-use super::compare::Options;
 use crate::history::side::Side;
 use crate::store::manifest::Manifest;
 
 /// The manifest in a folder of a side, or the reason for which it cannot be read; the study's name first.
 pub type Read = (String, String, Result<Manifest, String>);
 
-/// The studies of a side that are asked for, and those that are not `there` on the other side: one may have another name here.
+/// The `studies` of a side, all when empty, and those that are not `there` on the other side: one may have another name here.
 ///
 /// # Errors
 /// When the folders cannot be listed, or none has results.
-pub fn read(side: &Side, there: &Side, options: &Options<'_>) -> Result<Vec<Read>, String> {
+pub fn read(side: &Side, there: &Side, studies: &[String]) -> Result<Vec<Read>, String> {
     let folders = side.studies()?;
     if folders.is_empty() {
         return Err(format!("there are no results at {}", side.label));
     }
     let others = there.studies()?;
     let is_wanted = |folder: &String| {
-        options.studies.is_empty()
+        studies.is_empty()
             || side.is_single()
-            || options.studies.contains(folder)
+            || studies.contains(folder)
             || !there.is_single() && !others.contains(folder)
     };
     let read = folders.into_iter().filter(is_wanted).filter_map(|folder| {
