@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::error::StoreError;
-use super::lock;
+use super::owner::{self, Owner};
 use crate::presence;
 
 /// How temporary files begin; whatever is left of a killed run is told by it.
@@ -130,7 +130,7 @@ fn origin() -> &'static Origin {
             parts if parts.iter().any(|part| part.is_empty()) => String::new(),
             parts => blake3::hash(parts.concat().as_bytes()).to_hex()[..8].to_owned(),
         };
-        let owner = lock::Owner::current();
+        let owner = Owner::current();
         Origin {
             space: digest(&[&owner.boot, "\n", &owner.space]),
             boot: digest(&[&owner.boot]),
@@ -216,7 +216,7 @@ fn remove_ended(path: &Path, name: &str) -> Option<()> {
     let (same_space, same_boot) = (is(space, &own.space), is(boot, &own.boot));
     let mut lock = None;
     if same_space || same_boot {
-        if same_space && lock::lives(process) {
+        if same_space && owner::lives(process) {
             return None;
         }
         // A process of another user may be hidden, and its files are not opened.
@@ -277,7 +277,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut zombie = std::process::Command::new("true").spawn().unwrap();
         let ended = zombie.id();
-        while lock::lives(ended) {
+        while owner::lives(ended) {
             std::thread::sleep(std::time::Duration::from_millis(1));
         }
         let (living, Origin { space, boot, computer }) = (std::process::id(), origin());

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::StoreError;
 use super::file::{self, Durability};
-use super::lock::boot;
+use super::owner::boot;
 
 pub const INDEX: &str = "files.json";
 const FORMAT: u32 = 1;

@@ -19,6 +19,7 @@ pub mod journal;
 pub mod key_record;
 pub mod lock;
 pub mod manifest;
+pub mod owner;
 pub mod parquet;
 pub mod results;
 pub mod shards;

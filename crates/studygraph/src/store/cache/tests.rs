@@ -127,7 +127,7 @@ fn a_run_that_writes_removes_what_killed_runs_left() {
     let folders = [folder.path().to_owned(), own]
         .into_iter()
         .chain(["entries", "journals", "notes", "packs"].map(|name| folder.path().join(name)));
-    let boot = blake3::hash(lock::boot().as_bytes()).to_hex()[..8].to_owned();
+    let boot = blake3::hash(crate::store::owner::boot().as_bytes()).to_hex()[..8].to_owned();
     let (mut left, mut others) = (Vec::new(), Vec::new());
     for folder in folders {
         fs::create_dir_all(&folder).unwrap();
