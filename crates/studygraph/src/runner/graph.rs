@@ -3,20 +3,19 @@
 //! Demand is that of the whole study plus what the user asks for, also when only some stages are run: otherwise
 //! `--only` would change keys. Must not know: the cache, states.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
 use petgraph::algo::tarjan_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 use petgraph::visit::DfsPostOrder;
 
-use super::key;
 use super::options::Wanted;
-use crate::stage::{Ahead, Demand, Omission, Port, Stage, Want};
+use crate::stage::{Ahead, Demand, Kind, Omission, Port, Stage, Want};
 use crate::store::bundle::MANY;
 use crate::study::{Node, Study};
 use crate::table::schema::Schema;
-use declare::digest::Digest;
+use declare::digest::{Digest, Writer};
 use declare::error::{Diagnostic, suggest};
 
 /// A port with its source found.
@@ -88,7 +87,7 @@ impl Graph {
                 }
             }
         }
-        let (demanded, codes) = (demanded(&outputs, &demands), key::codes(study));
+        let (demanded, codes) = (demanded(&outputs, &demands), codes(study));
         Ok(Self { order, inputs, readers, demands, outputs, demanded, codes })
     }
 
@@ -336,4 +335,27 @@ fn cycle(study: &Study, inputs: &[Vec<Input>], members: &[usize]) -> Diagnostic 
     let steps: Vec<String> = (0..round.len()).map(|at| format!("{} reads {}", name(at), name(at + 1))).collect();
     let place = study.nodes[round[0]].place;
     Diagnostic::new(format!("stages read each other in a circle: {}", steps.join(", "))).at(place)
+}
+
+/// The digest of the code that each stage depends on: that of its kind, and of the kinds of which it runs variants.
+fn codes(study: &Study) -> Vec<Digest> {
+    let program = study.program;
+    let mut known: BTreeMap<(&str, BTreeSet<&str>), Digest> = BTreeMap::new();
+    let of_node = |node: &Node| {
+        let nested = node.record.kinds();
+        *known.entry((node.kind.name, nested)).or_insert_with_key(|(kind, nested)| {
+            let text = nested.iter().fold((program.code_of)(kind), |all, nested| {
+                let version = program.kind(nested).map_or(0, |kind| kind.version);
+                format!("{all} {nested} {version} {}", (program.code_of)(nested))
+            });
+            code(node.kind, &text)
+        })
+    };
+    study.nodes.iter().map(of_node).collect()
+}
+
+/// The digest of a kind whose sources have this one.
+#[must_use]
+pub fn code(kind: &Kind, sources: &str) -> Digest {
+    Writer::new("gearstudy 1 kind").text(kind.name).integer(kind.version.into()).text(sources).finish()
 }

@@ -4,17 +4,16 @@
 //! whatever changes a key has a name. Never in it: labels of stages, paths, times, thread counts. The name of a stage enters by
 //! its seed alone, and only where random numbers are drawn. Must not know: the cache, states.
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::sync::Arc;
 
 use super::chunk::{Chunks, chunks};
 use super::graph::{Graph, Input};
-use crate::stage::{Demand, Kind};
+use crate::stage::Demand;
 use crate::store::entry::StoredTable;
 use crate::store::hexadecimal;
 use crate::store::manifest::{KeyRecord, Short};
-use crate::study::{Node, Study};
+use crate::study::Study;
 use declare::digest::{Digest, Writer};
 use declare::record::Record;
 use declare::seed::Seed;
@@ -112,33 +111,9 @@ fn values_of(field: &str, values: &[f64]) -> Digest {
     Writer::new("gearstudy 1 axis").text(field).floats(values).finish()
 }
 
-/// The digest of the code that each stage depends on: that of its kind, and of the kinds of which it runs variants.
-#[must_use]
-pub fn codes(study: &Study) -> Vec<Digest> {
-    let program = study.program;
-    let mut known: BTreeMap<(&str, BTreeSet<&str>), Digest> = BTreeMap::new();
-    let of_node = |node: &Node| {
-        let nested = node.record.kinds();
-        *known.entry((node.kind.name, nested)).or_insert_with_key(|(kind, nested)| {
-            let text = nested.iter().fold((program.code_of)(kind), |all, nested| {
-                let version = program.kind(nested).map_or(0, |kind| kind.version);
-                format!("{all} {nested} {version} {}", (program.code_of)(nested))
-            });
-            code(node.kind, &text)
-        })
-    };
-    study.nodes.iter().map(of_node).collect()
-}
-
-/// The digest of a kind whose sources have this one.
-#[must_use]
-pub fn code(kind: &Kind, sources: &str) -> Digest {
-    Writer::new("gearstudy 1 kind").text(kind.name).integer(kind.version.into()).text(sources).finish()
-}
-
 /// What the chunks of one stage have in common.
 pub struct Parts<'a> {
-    /// As [`code`].
+    /// As [`code`](super::graph::code).
     pub code: Digest,
     pub record: &'a Record,
     /// The fields that say which rows there are.

@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::runner::graph::Graph;
-use crate::runner::key::{Parts, code};
+use crate::runner::graph::code;
+use crate::runner::key::Parts;
 use crate::stage::Demand;
 use crate::store::bundle::MANY;
 use declare::digest::Digest;
