@@ -13,13 +13,13 @@ use rayon::{ScopeFifo, ThreadPoolBuilder};
 
 use super::board::{Board, StageState, Step};
 use super::events::{Event, Observer, Silent};
-use super::fault::Fault;
+use super::fault::{Ended, Fault};
 use super::note;
 use super::options::Options;
 use super::outcome::Outcome;
 use super::ownership;
 use super::plan;
-use super::work::{Ended, Run, message};
+use super::work::{Run, message};
 use crate::stage::memory;
 use crate::store::cache::Cache;
 use crate::store::entry::StoredTable;

@@ -38,3 +38,15 @@ impl From<StoreError> for Fault {
         }
     }
 }
+
+/// Why a part gave no tables.
+pub(super) enum Ended {
+    GivenUp,
+    Fault(Fault),
+}
+
+impl From<StoreError> for Ended {
+    fn from(error: StoreError) -> Self {
+        Self::Fault(error.into())
+    }
+}

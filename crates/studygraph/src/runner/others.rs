@@ -6,42 +6,56 @@ use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::key::{Cut, KeyedChunk};
-use super::work::{Ended, Run};
+use super::board::Board;
+use super::fault::Ended;
+use super::key::Cut;
+use super::options::Options;
 use crate::stage::Others;
+use crate::store::cache::Cache;
 use crate::table::data::{Cell, Table};
 use declare::digest::Digest;
 use declare::error::Failure;
 
+/// Reads a table of a part.
+type Reads<'r> = &'r (dyn Fn(usize, &str) -> Result<Arc<Table>, Ended> + Sync);
+
 /// The other parts of one.
-pub(super) struct OfStage<'r, 'a> {
-    run: &'r Run<'a>,
+pub(super) struct OfStage<'r> {
     node: usize,
-    parts: &'r [KeyedChunk],
-    /// Keys of parts of the last success whose rows are the same functions of their values.
+    cache: &'r Cache,
+    spans: &'r Mutex<Spans>,
+    of_part: Reads<'r>,
+    /// As [`earlier`].
     earlier: Vec<Digest>,
     /// Why another part could not be read.
     ended: Mutex<Option<Ended>>,
 }
 
-impl<'r, 'a> OfStage<'r, 'a> {
-    pub(super) fn new(run: &'r Run<'a>, node: usize, parts: &'r [KeyedChunk]) -> Self {
-        let board = run.board();
-        let last = board.last(node);
-        // A stage that is forced is computed, whatever is known.
-        let is_forced = run.options.force.applies(&board.study.nodes[node].name);
-        let earlier = match (parts.first(), last) {
-            (Some(now), Some(last)) if matches!(now.cut, Cut::Part { .. }) && !is_forced => {
-                let alike = last.keys.iter().filter(|key| {
-                    let now = &now.record;
-                    (&key.config, &key.code, &key.seed, &key.demand) == (&now.config, &now.code, &now.seed, &now.demand)
-                        && key.inputs == now.inputs
-                });
-                alike.map(|record| record.key).collect()
-            }
-            _ => Vec::new(),
-        };
-        Self { run, node, parts, earlier, ended: Mutex::default() }
+/// Keys of parts of the last success of a stage whose rows are the same functions of their values.
+pub(super) fn earlier(board: &Board, options: &Options, node: usize) -> Vec<Digest> {
+    // A stage that is forced is computed, whatever is known.
+    let is_forced = options.force.applies(&board.study.nodes[node].name);
+    match (board.nodes[node].parts.first(), board.last(node)) {
+        (Some(now), Some(last)) if matches!(now.cut, Cut::Part { .. }) && !is_forced => {
+            let alike = last.keys.iter().filter(|key| {
+                let now = &now.record;
+                (&key.config, &key.code, &key.seed, &key.demand) == (&now.config, &now.code, &now.seed, &now.demand)
+                    && key.inputs == now.inputs
+            });
+            alike.map(|record| record.key).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+impl<'r> OfStage<'r> {
+    pub(super) fn new(
+        node: usize,
+        earlier: Vec<Digest>,
+        (cache, spans): (&'r Cache, &'r Mutex<Spans>),
+        of_part: Reads<'r>,
+    ) -> Self {
+        Self { node, cache, spans, of_part, earlier, ended: Mutex::default() }
     }
 
     /// Why another part could not be read.
@@ -50,9 +64,9 @@ impl<'r, 'a> OfStage<'r, 'a> {
     }
 }
 
-impl Others for OfStage<'_, '_> {
+impl Others for OfStage<'_> {
     fn of_part(&self, part: usize, table: &str) -> Result<Arc<Table>, Failure> {
-        self.run.of_part(self.node, part, self.parts[part].key, table).map_err(|ended| {
+        (self.of_part)(part, table).map_err(|ended| {
             self.ended.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(ended);
             Failure::Stopped
         })
@@ -62,7 +76,7 @@ impl Others for OfStage<'_, '_> {
         let known = self.spans(table);
         let meets = |span: &&Span| !before(&span.last, first) && !before(last, &span.first);
         // What is gone or damaged is computed.
-        known.iter().filter(meets).filter_map(|span| self.run.cache.table(span.key, table).ok().map(Arc::new)).collect()
+        known.iter().filter(meets).filter_map(|span| self.cache.table(span.key, table).ok().map(Arc::new)).collect()
     }
 }
 
@@ -76,15 +90,15 @@ pub(super) struct Span {
     last: Vec<Cell>,
 }
 
-impl OfStage<'_, '_> {
+impl OfStage<'_> {
     /// Those of the last success, in the order of their rows. They are looked at once in a run, and not held.
     fn spans(&self, table: &str) -> Arc<Vec<Span>> {
-        let mut all = self.run.spans.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut all = self.spans.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = all.get(&(self.node, table.to_owned())) {
             return Arc::clone(known);
         }
         let mut found: Vec<Span> =
-            self.earlier.iter().filter_map(|key| span(*key, &self.run.cache.table(*key, table).ok()?)).collect();
+            self.earlier.iter().filter_map(|key| span(*key, &self.cache.table(*key, table).ok()?)).collect();
         found.sort_by(|one, two| order(&one.first, &two.first));
         let found = Arc::new(found);
         all.insert((self.node, table.to_owned()), Arc::clone(&found));

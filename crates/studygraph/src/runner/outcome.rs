@@ -7,12 +7,11 @@ use std::sync::Arc;
 
 use super::board::{Board, StageState};
 use super::fault::Fault;
-use super::key::phrase;
-use super::pieces;
+use super::key::{Cut, KeyedChunk, phrase};
 use super::plan::left_out;
 use crate::stage::Omission;
 use crate::store::bundle;
-use crate::store::cache::Cache;
+use crate::store::cache::{Cache, Lookup};
 use crate::store::entry::StoredTable;
 use crate::store::error::StoreError;
 use crate::store::manifest::{
@@ -109,7 +108,7 @@ impl Outcome {
                 tables: if progress.state.has_tables() { tables.collect() } else { Vec::new() },
                 parts: progress.parts.iter().map(|part| part.key).collect(),
                 whole: progress.whole,
-                is_cut: pieces::is_cut(&progress.parts),
+                is_cut: is_cut(&progress.parts),
             }
         });
         let stages: Vec<StageOutcome> = stages.collect();
@@ -139,7 +138,7 @@ impl Outcome {
     /// When the stage gave no such table, or the cache was damaged since. A damaged entry is forgotten, so the next run
     /// computes it again.
     pub fn table(&self, cache: &Cache, stage: &str, table: &str) -> Result<Table, StoreError> {
-        let parts = pieces::filled_keys(cache, self.parts(stage), table);
+        let parts = filled_keys(cache, self.parts(stage), table);
         let loaded = parts.iter().map(|&key| forget_damaged(cache, key, cache.table(key, table)));
         let loaded = loaded.collect::<Result<Vec<_>, _>>()?;
         together(&format!("{stage}.{table}"), loaded)
@@ -167,7 +166,7 @@ impl Outcome {
         table: &str,
     ) -> Option<impl Iterator<Item = Result<Table, StoreError>> + use<'o>> {
         self.stage(stage).filter(|stage| stage.is_cut)?;
-        let keys = pieces::filled_keys(cache, self.parts(stage), table);
+        let keys = filled_keys(cache, self.parts(stage), table);
         let table = table.to_owned();
         (keys.len() > 1).then(|| keys.into_iter().map(move |key| forget_damaged(cache, key, cache.table(key, &table))))
     }
@@ -276,6 +275,29 @@ fn copied<'r>(records: impl Iterator<Item = &'r KeyRecord>) -> Vec<KeyRecord> {
         copy
     };
     records.map(copied).collect()
+}
+
+/// Whether the tables of a stage come in pieces.
+pub(super) fn is_cut(parts: &[KeyedChunk]) -> bool {
+    parts.len() > 1 && parts.iter().all(|part| matches!(part.cut, Cut::Part { .. }))
+}
+
+/// Of entries that have so many rows of a table those that have any; the first, where none has.
+pub(super) fn filled(rows: impl Iterator<Item = usize>) -> Vec<usize> {
+    let filled: Vec<usize> = rows.enumerate().filter(|(_, rows)| *rows > 0).map(|(index, _)| index).collect();
+    if filled.is_empty() { vec![0] } else { filled }
+}
+
+/// The keys of those that have rows of a table. What cannot be looked up is left to whoever reads it.
+fn filled_keys(cache: &Cache, keys: &[Digest], table: &str) -> Vec<Digest> {
+    if keys.len() < 2 {
+        return keys.to_vec();
+    }
+    let rows = |key: &Digest| match cache.look_up(*key) {
+        Lookup::Found(entry) => entry.tables.iter().find(|stored| stored.name == table).map_or(1, |stored| stored.rows),
+        Lookup::Missing | Lookup::Damaged(_) => 1,
+    };
+    filled(keys.iter().map(rows)).into_iter().map(|index| keys[index]).collect()
 }
 
 /// The chunks of a table as one.

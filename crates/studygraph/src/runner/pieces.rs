@@ -6,52 +6,18 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-use super::fault::Fault;
-use super::key::{Cut, KeyedChunk};
+use super::fault::{Ended, Fault};
+use super::key::KeyedChunk;
 use super::others::order;
-use super::work::{Ended, Run};
-use crate::store::cache::{Cache, Lookup};
+use super::outcome::is_cut;
+use super::work::Run;
 use crate::store::entry::StoredTable;
 use crate::store::error::StoreError;
 use crate::table::content::Content;
 use crate::table::data::{Cell, Data};
 use declare::digest::Digest;
 
-/// Whether the tables of a stage come in pieces.
-pub(super) fn is_cut(parts: &[KeyedChunk]) -> bool {
-    parts.len() > 1 && parts.iter().all(|part| matches!(part.cut, Cut::Part { .. }))
-}
-
-/// Of entries that have so many rows of a table those that have any; the first, where none has.
-pub(super) fn filled(rows: impl Iterator<Item = usize>) -> Vec<usize> {
-    let filled: Vec<usize> = rows.enumerate().filter(|(_, rows)| *rows > 0).map(|(index, _)| index).collect();
-    if filled.is_empty() { vec![0] } else { filled }
-}
-
-/// The keys of those that have rows of a table. What cannot be looked up is left to whoever reads it.
-pub(super) fn filled_keys(cache: &Cache, keys: &[Digest], table: &str) -> Vec<Digest> {
-    if keys.len() < 2 {
-        return keys.to_vec();
-    }
-    let rows = |key: &Digest| match cache.look_up(*key) {
-        Lookup::Found(entry) => entry.tables.iter().find(|stored| stored.name == table).map_or(1, |stored| stored.rows),
-        Lookup::Missing | Lookup::Damaged(_) => 1,
-    };
-    filled(keys.iter().map(rows)).into_iter().map(|index| keys[index]).collect()
-}
-
 impl Run<'_> {
-    /// The parts of a stage that have rows of a table, all parts being known.
-    pub(super) fn filled(&self, node: usize, name: &str) -> Vec<usize> {
-        let board = self.board();
-        let rows = board.nodes[node].known.iter().map(|known| {
-            let stored = known.entry.iter().flat_map(|entry| &entry.tables).find(|table| table.name == name);
-            // Who has no entry is asked for the table.
-            stored.map_or(1, |table| table.rows)
-        });
-        filled(rows)
-    }
-
     /// What is known of a table in pieces, found without holding more than a column of a piece; none where the whole must
     /// be there for it.
     pub(super) fn described(

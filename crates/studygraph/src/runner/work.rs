@@ -12,11 +12,11 @@ use std::time::Instant;
 
 use super::board::{Board, Known};
 use super::events::{Event, Observer};
-use super::fault::Fault;
+use super::fault::{Ended, Fault};
 use super::key::{Cut, KeyedChunk, Why};
 use super::options::Options;
-use super::others::{OfStage, Spans};
-use super::outcome::together;
+use super::others::{OfStage, Spans, earlier};
+use super::outcome::{filled, together};
 use crate::stage::{Context, Demand, Inputs, Kind, Stage};
 use crate::store::cache::Cache;
 use crate::store::entry::{OfRun, part};
@@ -66,18 +66,6 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Why a part gave no tables.
-pub(super) enum Ended {
-    GivenUp,
-    Fault(Fault),
-}
-
-impl From<StoreError> for Ended {
-    fn from(error: StoreError) -> Self {
-        Self::Fault(error.into())
-    }
-}
-
 impl Run<'_> {
     /// A table of a part that was just computed.
     pub(super) fn fresh(&self, node: usize, index: usize, name: &str) -> Option<Arc<Table>> {
@@ -94,6 +82,17 @@ impl Run<'_> {
             Err(StoreError::Damaged { problem, .. }) => self.repair(node, index, name, problem),
             Err(other) => Err(other.into()),
         }
+    }
+
+    /// The parts of a stage that have rows of a table, all parts being known.
+    pub(super) fn filled(&self, node: usize, name: &str) -> Vec<usize> {
+        let board = self.board();
+        let rows = board.nodes[node].known.iter().map(|known| {
+            let stored = known.entry.iter().flat_map(|entry| &entry.tables).find(|table| table.name == name);
+            // Who has no entry is asked for the table.
+            stored.map_or(1, |table| table.rows)
+        });
+        filled(rows)
     }
 
     /// A table of a stage, all chunks together.
@@ -195,7 +194,9 @@ impl Run<'_> {
             work: &work,
         };
         let began = Instant::now();
-        let others = OfStage::new(self, node, &parts);
+        let of_part = |part: usize, table: &str| self.of_part(node, part, parts[part].key, table);
+        let others =
+            OfStage::new(node, earlier(&self.board(), self.options, node), (self.cache, &self.spans), &of_part);
         let result = catch_unwind(AssertUnwindSafe(|| match &part.cut {
             Cut::Whole => of_study.stage.run(&context, &inputs),
             Cut::Axis(field, values) => {
