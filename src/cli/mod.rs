@@ -43,6 +43,7 @@ pub use studygraph::stage::memory::Allocator;
 
 use clap::Parser;
 
+use declare::error::Diagnostic;
 use studygraph::store::parquet;
 use studygraph::study::LoadError;
 
@@ -77,6 +78,12 @@ pub enum Ending {
 }
 
 impl Ending {
+    /// What is wrong that has no place in a file: a name on the command line that no stage has, for one.
+    fn without_place(diagnostic: &Diagnostic) -> Self {
+        let help = diagnostic.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
+        Self::Usage(format!("{}{help}", diagnostic.message))
+    }
+
     /// The exit code, as the help lists it.
     #[must_use]
     pub fn code(&self) -> i32 {

@@ -21,7 +21,6 @@ use super::signals::stop_flag;
 use super::{Ending, draw, json, studies};
 use crate::program::PROGRAM;
 use crate::stage::Want;
-use declare::error::Diagnostic;
 use studygraph::presence;
 use studygraph::runner::events::Observer;
 use studygraph::runner::execute::{self, RunError};
@@ -84,12 +83,6 @@ pub(super) fn wanted(name: &str) -> Result<Wanted, String> {
         }
         _ => Err(format!("`{name}` is not a table or column; write `stage.table` or `stage.table.column`")),
     }
-}
-
-/// What is wrong that has no place in a file: a name on the command line that no stage has, for one.
-pub(super) fn unknown(diagnostic: &Diagnostic) -> Ending {
-    let help = diagnostic.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
-    Ending::Usage(format!("{}{help}", diagnostic.message))
 }
 
 pub(super) fn run(studies: &[Study], places: &Places, selection: &Selection, how: &How) -> Result<(), Ending> {
@@ -162,7 +155,7 @@ pub(super) fn run_one(
     let options = options(selection, how)?;
     let lines = how.json.then(|| Lines::of(study));
     if how.explain {
-        let plan = plan::plan(study, &cache, &options).map_err(|error| unknown(&error))?;
+        let plan = plan::plan(study, &cache, &options).map_err(|error| Ending::without_place(&error))?;
         match lines {
             Some(_) => events::line(&json!({ "event": "planned", "plan": plan_json(study, &plan) })),
             None => tell(&plan_text(study, &plan)),
@@ -180,7 +173,7 @@ pub(super) fn run_one(
     };
     let run = || execute::run(study, &cache, &options, observer, stop, &folder, Some(&draw));
     let (outcome, published) = watcher.telling(run).map_err(|error| match error {
-        RunError::Study(diagnostic) => unknown(&diagnostic),
+        RunError::Study(diagnostic) => Ending::without_place(&diagnostic),
         RunError::Beyond(diagnostic) => Ending::Invalid(Box::new(study.refused(*diagnostic))),
         RunError::Store(StoreError::Stopped { .. }) => Ending::Stopped,
         other => Ending::Usage(other.to_string()),
@@ -243,7 +236,9 @@ fn summed_up(study: &Study, outcome: &Outcome, folder: &Folder, verdicts: Option
 /// # Errors
 /// When a run would replace the results of another study of the same name.
 pub(super) fn check_owner(study: &Study, places: &Places) -> Result<(), Ending> {
-    ownership::check(study, &Folder::new(&places.results, &study.name)).map(drop).map_err(|error| unknown(&error))
+    ownership::check(study, &Folder::new(&places.results, &study.name))
+        .map(drop)
+        .map_err(|error| Ending::without_place(&error))
 }
 
 /// A plan writes nothing: where there is no cache yet, an empty one elsewhere stands for it.
@@ -259,7 +254,7 @@ pub(super) fn plan_of(study: &Study, places: &Places, options: &Options) -> Resu
     };
     // As a run, which does without one that cannot be opened.
     let cache = Cache::open_if_possible(root);
-    let plan = plan::plan(study, &cache, options).map_err(|error| unknown(&error));
+    let plan = plan::plan(study, &cache, options).map_err(|error| Ending::without_place(&error));
     let (entries, journal) = cache.problems();
     for problem in entries.into_iter().chain(journal) {
         progress::told(&format!("warning: {problem}"));

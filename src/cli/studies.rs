@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 
 use super::Ending;
 use super::arguments::Changes;
-use super::run::unknown;
 use crate::program;
 use declare::error::nearest;
 use studygraph::presence;
@@ -119,7 +118,7 @@ pub(super) fn load_all(words: &[PathBuf], changes: &Changes) -> Result<Vec<Study
     for file in identity::one_path_each(files) {
         let study = program::load_changed(&file, &settings).map_err(|error| Ending::Invalid(Box::new(error)))?;
         distinct(&studies, &study)?;
-        check_beside(&study).map_err(|error| unknown(&error))?;
+        check_beside(&study).map_err(|error| Ending::without_place(&error))?;
         studies.push(study);
     }
     Ok(studies)
