@@ -7,12 +7,13 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value as Json, json};
 
 use super::arguments::{Limits, Output, Places, Selection, Sharding};
+use super::engine::kubernetes;
 use super::format::{duration, rough};
 use super::progress::{self, Watcher, out};
 use super::scratch::Scratch;
 use super::signals::stop_flag;
 use super::studies::load_all;
-use super::{Ending, engine, events, json, run};
+use super::{Ending, events, json, run};
 use crate::program::PROGRAM;
 use studygraph::runner::execute::RunError;
 use studygraph::runner::options::Options;
@@ -27,7 +28,7 @@ pub(super) fn shard(asked: &Sharding, places: &Places, quiet: bool) -> Result<()
             let selection = Selection { only: only.clone(), want: want.clone(), force: None };
             let plan = planned(study, places, &selection, *shards as usize, into, told(quiet, *output))?;
             if let Some(image) = manifest {
-                engine::kubernetes::write(&plan, into, image, quiet || output.is_json())?;
+                kubernetes::write(&plan, into, image, quiet || output.is_json())?;
             }
             Ok(())
         }
