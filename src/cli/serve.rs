@@ -7,7 +7,7 @@
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -17,7 +17,6 @@ use base64::engine::general_purpose::STANDARD;
 use serde_json::json;
 
 use super::progress::told;
-use super::watch::Board;
 use crate::report;
 use studygraph::store::archive::sha256_bytes;
 use studygraph::store::results::{Folder, PAGE};
@@ -46,6 +45,46 @@ const HEADERS: &str = "Connection: close\r\nCache-Control: no-store\r\nX-Content
     X-Frame-Options: DENY\r\nCross-Origin-Resource-Policy: same-origin\r\nCross-Origin-Opener-Policy: same-origin\r\n\
     Referrer-Policy: no-referrer\r\nContent-Security-Policy: default-src 'none'; style-src 'unsafe-inline'; \
     img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; script-src";
+
+/// What the page is to show.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Shown {
+    /// Grows with whatever is to be seen.
+    pub version: u64,
+    /// What is wrong with the study as it was saved last; empty where nothing is.
+    pub message: String,
+    /// The folder of the last results; none before the first.
+    pub folder: Option<PathBuf>,
+}
+
+/// What is shown, and whoever waits for something else.
+#[derive(Default)]
+pub struct Board {
+    shown: Mutex<Shown>,
+    changed: Condvar,
+}
+
+impl Board {
+    #[must_use]
+    pub fn shown(&self) -> Shown {
+        self.shown.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// What is shown as soon as it is not this version, or after a while.
+    #[must_use]
+    pub fn other_than(&self, version: u64, patience: Duration) -> Shown {
+        let shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
+        let waited = self.changed.wait_timeout_while(shown, patience, |shown| shown.version == version);
+        waited.unwrap_or_else(PoisonError::into_inner).0.clone()
+    }
+
+    pub fn show(&self, message: String, folder: Option<PathBuf>) {
+        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
+        let folder = folder.or_else(|| shown.folder.clone());
+        *shown = Shown { version: shown.version + 1, message, folder };
+        self.changed.notify_all();
+    }
+}
 
 /// Listens until the program ends.
 pub struct Server {

@@ -4,9 +4,9 @@
 //! good page. Must not know: how a study is run, how pages are sent.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
 use notify::event::{AccessKind, AccessMode, ModifyKind};
@@ -16,7 +16,7 @@ use serde_json::json;
 use super::arguments::{Changes, Places, Selection};
 use super::progress::{self, tell};
 use super::run::{self, How};
-use super::serve::Server;
+use super::serve::{Board, Server};
 use super::signals::stop_flag;
 use super::{Ending, draw, events, pages, show, studies};
 use crate::program::{self, examine};
@@ -31,46 +31,6 @@ const SETTLED: Duration = Duration::from_millis(15);
 /// How long whoever writes a file may hold it open before it is read as it is. A save empties the file first; a busy system
 /// may leave it so for longer than steps of a save are apart.
 const UNCLOSED: Duration = Duration::from_secs(2);
-
-/// What the page is to show.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Shown {
-    /// Grows with whatever is to be seen.
-    pub version: u64,
-    /// What is wrong with the study as it was saved last; empty where nothing is.
-    pub message: String,
-    /// The folder of the last results; none before the first.
-    pub folder: Option<PathBuf>,
-}
-
-/// What is shown, and whoever waits for something else.
-#[derive(Default)]
-pub struct Board {
-    shown: Mutex<Shown>,
-    changed: Condvar,
-}
-
-impl Board {
-    #[must_use]
-    pub fn shown(&self) -> Shown {
-        self.shown.lock().unwrap_or_else(PoisonError::into_inner).clone()
-    }
-
-    /// What is shown as soon as it is not this version, or after a while.
-    #[must_use]
-    pub fn other_than(&self, version: u64, patience: Duration) -> Shown {
-        let shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
-        let waited = self.changed.wait_timeout_while(shown, patience, |shown| shown.version == version);
-        waited.unwrap_or_else(PoisonError::into_inner).0.clone()
-    }
-
-    fn show(&self, message: String, folder: Option<PathBuf>) {
-        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
-        let folder = folder.or_else(|| shown.folder.clone());
-        *shown = Shown { version: shown.version + 1, message, folder };
-        self.changed.notify_all();
-    }
-}
 
 pub(super) fn watch(
     word: &Path,
