@@ -1,21 +1,94 @@
-//! The axes of a figure: grid, ticks, labels.
+//! The axes of a figure: the frame between them, grid, ticks, labels.
 //!
 //! Must not know: what is drawn between them.
 
 use std::fmt::Write;
 
-use super::frame::Frame;
+use super::cells::Cells;
+use super::drawing::true_to_scale;
+use super::frame::{Frame, Layout, exaggerated};
 use super::plot::{Axis, Kind, Plot};
-use super::scale::Tick;
+use super::scale::{Scale, Tick, with_power};
 use super::svg::{at, escape};
-use declare::number::{significant, superscript, unit_symbol};
+use declare::number::{significant, unit_symbol};
+
+/// A drawing whose frame is wider has no other beside it \[px\].
+const ALONE: f64 = 590.0;
 
 impl Plot {
+    fn points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.series.iter().flat_map(|series| series.runs.iter().flatten().copied())
+    }
+
+    /// `None` where there is no finite value.
+    pub(super) fn frame(&self, top: f64, layout: Layout) -> Option<Frame> {
+        let edges = |pick: fn(&Cells) -> &[f64]| self.cells.iter().flat_map(pick).copied().collect::<Vec<f64>>();
+        let named = || self.named.iter().map(|named| named.place);
+        let xs = self.points().chain(named()).map(|point| point.0).chain(self.marks.iter().filter_map(|mark| mark.x));
+        let ys = self.points().chain(named()).map(|point| point.1).chain(self.marks.iter().filter_map(|mark| mark.y));
+        let (xs, ys) = (xs.chain(edges(|cells| &cells.xs)), ys.chain(edges(|cells| &cells.ys)));
+        let x = if self.kind == Kind::Bar {
+            Scale { low: -0.5, high: self.categories.len().max(1) as f64 - 0.5, is_log: false }
+        } else {
+            // A point at the very edge would be cut in half.
+            let margin = if matches!(self.kind, Kind::Points | Kind::Front | Kind::Drawing)
+                || self.marks.iter().any(|mark| mark.x.is_some())
+            {
+                0.02
+            } else {
+                0.0
+            };
+            let scale = Scale::around(xs, self.x.is_log, 0.0, self.kind == Kind::Tornado)?;
+            let room = if scale.is_log { 0.0 } else { margin * (scale.high - scale.low) };
+            Scale { low: scale.low - room, high: scale.high + room, ..scale }
+        };
+        // A drawing or a map need not show where zero is.
+        let room = if matches!(self.kind, Kind::Drawing | Kind::Map) { 0.0 } else { 0.06 };
+        let bars = matches!(self.kind, Kind::Bar | Kind::Histogram);
+        let from_zero = (bars && !self.y.is_log) || self.kind == Kind::Chart;
+        let is_lying = self.kind == Kind::Tornado;
+        let names = || Scale { low: -0.5, high: self.categories.len().max(1) as f64 - 0.5, is_log: false };
+        let y = if is_lying { names() } else { Scale::around(ys, self.y.is_log, room, from_zero)? };
+        let longest = if is_lying {
+            self.categories.iter().map(|name| name.chars().count()).max().unwrap_or(0)
+        } else {
+            y.ticks(layout.ticks[1]).iter().map(|tick| tick.label.chars().count()).max().unwrap_or(0)
+        };
+        let left = 8.0 + 6.0 * layout.character + layout.character * longest as f64;
+        let right = layout.right + if self.kind == Kind::Map { 11.0 * layout.character } else { 0.0 };
+        let width = layout.width - left - right;
+        let (x, y, width, height) = if self.kind == Kind::Drawing {
+            let [beside, alone] = layout.tallest;
+            let tallest = if (x.high - x.low) * beside > ALONE * (y.high - y.low) { alone } else { beside };
+            true_to_scale(x, y, width, tallest)
+        } else {
+            (x, y, width, layout.height)
+        };
+        let is_downward = self.kind == Kind::Chart || is_lying;
+        let frame = Frame { left, top, width, height, x, y, is_downward, exaggeration: None, layout };
+        Some(self.length.map_or(frame, |length| exaggerated(frame, length)))
+    }
+
+    /// Width and height of the whole figure.
+    pub(super) fn extent(&self, frame: &Frame) -> (f64, f64) {
+        let right = frame.layout.right + if self.kind == Kind::Map { 11.0 * frame.layout.character } else { 0.0 };
+        let below = if self.slants_categories(frame) { 112.0 } else { frame.layout.below };
+        (frame.right() + right, frame.bottom() + below)
+    }
+
+    pub(super) fn slants_categories(&self, frame: &Frame) -> bool {
+        if self.kind == Kind::Tornado {
+            return false;
+        }
+        let longest = self.categories.iter().map(|name| name.chars().count()).max().unwrap_or(0);
+        frame.layout.character * longest as f64 > 0.94 * frame.width / self.categories.len().max(1) as f64
+    }
+
     pub(super) fn draw_axes(&self, svg: &mut String, frame: &Frame) {
         let (left, right, top, bottom) = (at(frame.left), at(frame.right()), at(frame.top), at(frame.bottom()));
         let is_slanted = self.slants_categories(frame);
         // Where nothing varies along y, its values say nothing.
-        let is_flat = self.cells.as_ref().is_some_and(super::cells::Cells::has_one_row);
+        let is_flat = self.cells.as_ref().is_some_and(Cells::has_one_row);
         let is_lying = self.kind == Kind::Tornado;
         if is_lying {
             self.name_bars(svg, frame);
@@ -95,16 +168,6 @@ impl Plot {
                 write!(svg, r#"<text class="tick name" x="{x}" y="{y}" text-anchor="middle">{name}</text>"#)
             };
         }
-    }
-}
-
-/// A quantity's name with its unit and the power of ten that its values are without.
-pub fn with_power(label: &str, symbol: &str, power: i32) -> String {
-    match (power, symbol.is_empty()) {
-        (0, true) => label.to_owned(),
-        (0, false) => format!("{label} ({symbol})"),
-        (power, true) => format!("{label} (10{})", superscript(power)),
-        (power, false) => format!("{label} (10{} {symbol})", superscript(power)),
     }
 }
 

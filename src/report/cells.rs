@@ -8,7 +8,7 @@ use std::fmt::Write;
 use super::frame::Frame;
 use super::isolines::pieces;
 use super::look::Colour;
-use super::scale::Scale;
+use super::scale::{Scale, with_power};
 use super::svg::{at, escape};
 use declare::number::{significant, unit_symbol, with_unit};
 
@@ -150,7 +150,7 @@ impl Cells {
             let _ = write!(svg, r#"<text class="tick" x="{x}" y="{y}">{label}</text>"#);
         }
         let symbol = unit_symbol(&self.unit);
-        let power = super::axes::with_power(&self.label, &symbol, scale.power());
+        let power = with_power(&self.label, &symbol, scale.power());
         let (x, y) = (at(left + BAR + 9.0 * frame.layout.character), at(frame.top + 0.5 * frame.height));
         let _ = write!(
             svg,

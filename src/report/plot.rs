@@ -7,7 +7,7 @@
 use std::fmt::Write;
 
 use super::cells::Cells;
-use super::frame::{Frame, Layout};
+use super::frame::{Frame, Layout, Size};
 use super::legend::{self, Item, Sign};
 use super::look::{Line, Look};
 use super::svg::{at, escape};
@@ -103,15 +103,6 @@ pub struct Mark {
 pub struct Named {
     pub name: String,
     pub place: (f64, f64),
-}
-
-/// How large a figure is as a file of its own.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Size {
-    #[default]
-    Page,
-    /// A column of a journal.
-    Column,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -154,6 +154,16 @@ fn decimal(digits: i64, exponent: i32) -> f64 {
     format!("{digits}e{exponent}").parse().unwrap_or(f64::NAN)
 }
 
+/// A quantity's name with its unit and the power of ten that its values are without.
+pub fn with_power(label: &str, symbol: &str, power: i32) -> String {
+    match (power, symbol.is_empty()) {
+        (0, true) => label.to_owned(),
+        (0, false) => format!("{label} ({symbol})"),
+        (power, true) => format!("{label} (10{})", superscript(power)),
+        (power, false) => format!("{label} (10{} {symbol})", superscript(power)),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

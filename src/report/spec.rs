@@ -3,7 +3,8 @@
 //! Must not know: the tables that it is drawn from.
 
 use super::cells::Best;
-use super::plot::{Kind, Size};
+use super::frame::Size;
+use super::plot::Kind;
 use super::{ReportError, flags, integers, texts};
 use studygraph::table::data::Table;
 use studygraph::table::select::parse_conditions;

@@ -5,8 +5,8 @@
 
 use std::collections::BTreeSet;
 
-use super::frame::{Frame, Layout};
-use super::plot::{Kind, Plot, Series, Size};
+use super::frame::{Frame, Layout, Size};
+use super::plot::{Kind, Plot, Series};
 
 /// Points of a series that are few enough.
 const FEW: usize = 6000;

@@ -7,8 +7,10 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::cells::Cells;
+use super::frame::Size;
 use super::look::Look;
-use super::plot::{Axis, Kind, Plot, Series, Size};
+use super::plot::{Axis, Kind, Plot, Series};
+use super::scale::with_power;
 use declare::number::unit_symbol;
 
 const SCHEMA: &str = "https://vega.github.io/schema/vega-lite/v6.json";
@@ -245,7 +247,7 @@ fn number(value: f64) -> Value {
 }
 
 fn channel(field: &str, axis: &Axis, kind: &str) -> Value {
-    let title = super::axes::with_power(&axis.label, &unit_symbol(&axis.unit), 0);
+    let title = with_power(&axis.label, &unit_symbol(&axis.unit), 0);
     let mut channel = json!({ "field": field, "type": kind, "title": title, "scale": {} });
     if axis.is_log {
         channel["scale"]["type"] = json!("log");

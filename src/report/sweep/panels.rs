@@ -4,8 +4,7 @@
 
 use std::fmt::Write;
 
-use super::super::axes::with_power;
-use super::super::scale::Scale;
+use super::super::scale::{Scale, with_power};
 use super::super::svg::{at, escape};
 use declare::number::significant;
 
