@@ -4,8 +4,7 @@
 
 use serde::Serialize;
 
-use super::figure::Tables;
-use super::{ReportError, flags, floats, seconds, texts};
+use super::{ReportError, Tables, flags, floats, seconds, texts};
 use declare::number::significant;
 use studygraph::store::manifest::Manifest;
 

@@ -2,11 +2,11 @@
 //!
 //! Must not know: how anything is drawn. A figure whose table or column is not among the results is left out.
 
-use super::ReportError;
-use super::figure::{Figure, Tables, figure};
+use super::figure::{Figure, figure};
 use super::order::Order;
 use super::plot::Kind;
 use super::spec::Spec;
+use super::{ReportError, Tables};
 use declare::number::{significant, with_unit};
 use studygraph::store::bundle::MANY;
 use studygraph::store::manifest::{Manifest, StageRecord};

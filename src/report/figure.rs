@@ -3,13 +3,11 @@
 //! Must not know: SVG, HTML. A jump is kept a jump: a line is interrupted where the declared column changes, and where
 //! two points share an abscissa.
 
-use std::sync::Arc;
-
 use super::cells::Cells;
 use super::order::Order;
 use super::plot::{Axis, Kind, Mark, Named, Of, Plot, Series};
 use super::spec::Spec;
-use super::{ReportError, floats, integers, texts};
+use super::{ReportError, Tables, floats, integers, texts};
 use crate::report::look::{Line, Look};
 use declare::number::{significant, with_unit};
 use declare::units::{in_unit, parse_quantity};
@@ -29,9 +27,6 @@ pub struct Figure {
     /// Whether an axis shows what differs from run to run.
     pub varies: bool,
 }
-
-/// A table by its full name, `stage.table`.
-pub type Tables<'a> = &'a dyn Fn(&str) -> Option<Arc<Table>>;
 
 /// Reads the tables `figures` and `figure_published` of a report stage.
 ///

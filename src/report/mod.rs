@@ -39,7 +39,7 @@ mod warnings;
 use std::cell::RefCell;
 use std::sync::Arc;
 
-use figure::{Figure, Tables};
+use figure::Figure;
 use order::Order;
 pub use page::SCRIPT;
 
@@ -49,6 +49,9 @@ use studygraph::table::data::{Data, Table};
 
 /// The kind of stage that says what is shown.
 const REPORT: &str = "report";
+
+/// A table by its full name, `stage.table`.
+pub type Tables<'a> = &'a dyn Fn(&str) -> Option<Arc<Table>>;
 
 /// What a run's results look like.
 pub struct Rendered {

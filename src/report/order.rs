@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, HashSet};
 
-use super::figure::Tables;
+use super::Tables;
 use super::spec::Spec;
 use studygraph::store::bundle;
 use studygraph::store::manifest::Manifest;

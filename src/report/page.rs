@@ -11,13 +11,13 @@ use serde::Serialize;
 
 use super::choice::{self, Choice};
 use super::comparison;
-use super::figure::{Figure, Tables};
+use super::figure::Figure;
 use super::inputs::Inputs;
 use super::records::{self, StageTables};
 use super::sheet::{self, Sheet};
 use super::sweep::{self, Sweep};
 use super::warnings::{self, Warned};
-use super::{ReportError, flags, integers, plot, seconds, texts, verdict};
+use super::{ReportError, Tables, flags, integers, plot, seconds, texts, verdict};
 use studygraph::store::manifest::{Manifest, OmissionRecord, StageRecord};
 use studygraph::table::data::Table;
 

@@ -11,8 +11,7 @@ use base64::engine::general_purpose::STANDARD;
 use flate2::{Compression, GzBuilder};
 use serde::{Serialize, Serializer};
 
-use super::ReportError;
-use super::figure::Tables;
+use super::{ReportError, Tables};
 use declare::number::unit_symbol;
 use studygraph::store::bundle;
 use studygraph::store::manifest::{ColumnRecord, Manifest, StageRecord, TableRecord};

@@ -3,8 +3,9 @@
 //!
 //! Must not know: how anything is drawn.
 
+use super::Tables;
 use super::defaults::Draw;
-use super::figure::{Tables, sentence};
+use super::figure::sentence;
 use super::plot::Kind;
 use super::spec::Spec;
 use declare::number::{significant, unit_symbol, with_unit};

@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 
-use super::figure::Tables;
+use super::Tables;
 use declare::number::{significant, with_unit};
 use studygraph::store::manifest::Manifest;
 use studygraph::table::data::{Cell, Data, Table};

@@ -8,8 +8,7 @@ mod panels;
 use serde::Serialize;
 
 use self::panels::Named;
-use super::figure::Tables;
-use super::{ReportError, floats, integers, texts};
+use super::{ReportError, Tables, floats, integers, texts};
 use declare::number::{counted, significant, unit_symbol};
 use studygraph::store::manifest::{Manifest, StageRecord};
 use studygraph::table::data::{Data, Table};
