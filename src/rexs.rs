@@ -161,8 +161,8 @@ fn read(version: &str, model: &Model, stage: Option<&str>) -> Result<Imported, R
     let pair = RexsPair::read(model, model.stage(stage)?)?;
     let (body, missing, open) = pair.text()?;
     // Names of the file are in them.
-    notes.extend(pair.notes.iter().map(|note| note.replace(char::is_control, " ")));
-    let fates = report::Fates::of(model, &pair.components);
+    notes.extend(pair.remarks.notes.iter().map(|note| note.replace(char::is_control, " ")));
+    let fates = report::Fates::of(model, &pair.remarks.components);
     let mut head = vec![format!("# From a file of REXS {version}.")];
     head.extend(fates.lines().into_iter().chain(notes.iter().cloned()).map(|line| format!("# {line}")));
     head.extend(missing.iter().map(|what| format!("# It does not say: {what}.")));

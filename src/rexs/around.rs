@@ -1,7 +1,25 @@
 //! The components around a gear: flanks, tools, settings of the first manufacturing step, materials. Must not know: attributes.
 
-use super::gear::RexsPair;
 use super::model::{Component, Model};
+
+/// What is to be reported of the components that are read.
+#[derive(Default)]
+pub(super) struct Remarks<'a> {
+    pub components: Vec<&'a Component>,
+    /// Sentences about what a reader must know.
+    pub notes: Vec<String>,
+}
+
+impl<'a> Remarks<'a> {
+    /// Notes components whose attributes must be reported, each once.
+    pub fn concern(&mut self, components: impl IntoIterator<Item = &'a Component>) {
+        for component in components {
+            if !self.components.iter().any(|other| std::ptr::eq(*other, component)) {
+                self.components.push(component);
+            }
+        }
+    }
+}
 
 /// The components around a gear.
 pub(super) struct Around<'a> {
@@ -16,7 +34,7 @@ pub(super) struct Around<'a> {
 }
 
 impl<'a> Around<'a> {
-    pub(super) fn of(model: &'a Model, gear: &'a Component, name: &str, pair: &mut RexsPair<'a>) -> Self {
+    pub(super) fn of(model: &'a Model, gear: &'a Component, name: &str, remarks: &mut Remarks<'a>) -> Self {
         let bare = |found: Vec<(&'a Component, Option<u32>)>| -> Vec<&'a Component> {
             found.into_iter().map(|(component, _)| component).collect()
         };
@@ -51,10 +69,10 @@ impl<'a> Around<'a> {
             && let Some(other) = of_first(&is_tool).first()
         {
             let note = format!("The {name} is cut by a {}, which is not read: a rack stands for it.", other.kind);
-            pair.notes.push(note);
+            remarks.notes.push(note);
         }
         if steps.iter().any(|(component, order)| is_tool(component) && !is_first(*order)) {
-            pair.notes.push(format!("The tools of later manufacturing steps of the {name} are not read."));
+            remarks.notes.push(format!("The tools of later manufacturing steps of the {name} are not read."));
         }
         let of = |id: &str| -> Vec<&'a Component> {
             let found = bare(model.related(&["reference"], id, "origin", &["referenced"]));
@@ -70,15 +88,16 @@ impl<'a> Around<'a> {
                 materials = of(&owner.id);
                 if !materials.is_empty() {
                     let kind = &owner.kind;
-                    pair.notes
+                    remarks
+                        .notes
                         .push(format!("The {name} has no material of its own: that of its {kind} stands for it."));
                 }
             }
         }
         let data = bare(model.related(&["stage_gear_data"], &gear.id, "gear", &["stage_gear_data"]));
         let tools = steps.iter().map(|(component, _)| *component);
-        pair.concern([gear].into_iter().chain(flanks.iter().copied()).chain(tools));
-        pair.concern(materials.iter().copied().chain(data));
+        remarks.concern([gear].into_iter().chain(flanks.iter().copied()).chain(tools));
+        remarks.concern(materials.iter().copied().chain(data));
         Self { gear, flanks, racks, cutters, settings, materials }
     }
 }

@@ -1,8 +1,7 @@
 //! The rack or pinion-type cutter that cuts a gear, and the corner of its tip, as tools, settings and flanks say them. Must not know: the text of a study.
 
 use super::Refusal;
-use super::around::Around;
-use super::gear::RexsPair;
+use super::around::{Around, Remarks};
 use super::model::{Component, Fate, Said};
 use super::ways::{ANGLES, LENGTHS, PLAIN, Way, agreed, some};
 
@@ -56,7 +55,7 @@ impl StatedRack {
 
 impl Around<'_> {
     /// The pinion-type cutter, if it says all that a study takes of one; else a note says what is missing.
-    pub(super) fn cutter(&self, m: f64, name: &str, pair: &mut RexsPair) -> Result<Option<StatedCutter>, Refusal> {
+    pub(super) fn cutter(&self, m: f64, name: &str, remarks: &mut Remarks) -> Result<Option<StatedCutter>, Refusal> {
         let Some(first) = self.cutters.first() else { return Ok(None) };
         let of_cutter = |ways: &[Way]| agreed(&self.cutters, ways);
         let teeth = of_cutter(&[("number_of_teeth", PLAIN, 1.0)])?;
@@ -85,7 +84,7 @@ impl Around<'_> {
         ];
         let missing: Vec<&str> = missing.iter().filter(|(said, _)| said.is_none()).map(|(_, name)| *name).collect();
         self.cutters.iter().for_each(|cutter| cutter.is_not_supported());
-        pair.notes.push(format!(
+        remarks.notes.push(format!(
             "Not supported: the {} that cuts the {name}, since it does not say {}; a rack stands for it.",
             first.kind,
             missing.join(" and ")

@@ -5,7 +5,7 @@
 //! degrees, as they are shown. Must not know: the text of a study.
 
 use super::Refusal;
-use super::around::Around;
+use super::around::{Around, Remarks};
 use super::cutting::{StatedCutter, StatedRack, TipCorner};
 use super::model::{Component, Fate, Model, Relation, Said, refuse};
 use super::modifications::{Modification, modifications};
@@ -60,7 +60,7 @@ impl RexsGear {
         gear: &'a Component,
         missing_shift: Option<Said>,
         name: &str,
-        pair: &mut RexsPair<'a>,
+        remarks: &mut Remarks<'a>,
     ) -> Result<Self, Refusal> {
         let id = &gear.id;
         if gear.kind != "cylindrical_gear" {
@@ -91,7 +91,7 @@ impl RexsGear {
                 format!("the cylindrical_gear {id} has a helix angle of {helix_angle}°; only spur gears can be read");
             return refuse(helix.at, message);
         }
-        let around = Around::of(model, gear, name, pair);
+        let around = Around::of(model, gear, name, remarks);
         let of_flank: Vec<&Component> = [gear].into_iter().chain(around.flanks.iter().copied()).collect();
         let shift = shift_of(&of_flank, m)?.or(missing_shift);
         let pressure_angle = agreed(&of_flank, &[("normal_pressure_angle", ANGLES, 1.0)])?
@@ -102,7 +102,7 @@ impl RexsGear {
         )?
         .map(|height| height.map(|height| m * z + 2.0 * height)));
         let angle = pressure_angle.map_or(20.0, |angle| angle.value).to_radians();
-        let cutter = around.cutter(m, name, pair)?;
+        let cutter = around.cutter(m, name, remarks)?;
         let rack = around.rack(module, teeth, shift, tip_diameter, angle)?;
         let rack = if cutter.is_some() { rack.of_shaped(gear) } else { rack };
         let mut said = Self {
@@ -122,7 +122,7 @@ impl RexsGear {
             youngs_modulus: agreed(&around.materials, &[("elastic_modulus", STRESSES, 1.0)])?,
             poisson_ratio: agreed(&around.materials, &[("poisson_ratio", PLAIN, 1.0)])?,
             density: agreed(&around.materials, &[("density", DENSITIES, 1.0)])?,
-            modifications: modifications(model, &around.flanks, tip_diameter, pair),
+            modifications: modifications(model, &around.flanks, tip_diameter, remarks),
         };
         said.thickness = said.thickness(&around, &of_flank)?;
         for name in FOLLOWING {
@@ -240,9 +240,7 @@ pub(super) struct RexsPair<'a> {
     pub centre_distance: Option<Said>,
     /// A_ae and A_ai.
     pub centre_distance_allowance: [Option<Said>; 2],
-    pub components: Vec<&'a Component>,
-    /// Sentences about what a reader must know.
-    pub notes: Vec<String>,
+    pub remarks: Remarks<'a>,
 }
 
 /// Attributes of a stage that follow from its gears.
@@ -271,10 +269,9 @@ impl<'a> RexsPair<'a> {
                 number("upper_center_distance_allowance")?,
                 number("lower_center_distance_allowance")?,
             ],
-            components: Vec::new(),
-            notes: Vec::new(),
+            remarks: Remarks::default(),
         };
-        pair.concern(stage);
+        pair.remarks.concern(stage);
         if pair.centre_distance_allowance.iter().any(Option::is_none)
             && let Some(stage) = stage
         {
@@ -291,7 +288,7 @@ impl<'a> RexsPair<'a> {
         }
         let missing = Self::missing_shifts(model, stage, &gears)?;
         for ((gear, name), missing) in gears.into_iter().zip(["pinion", "gear"]).zip(missing) {
-            let gear = RexsGear::read(model, gear, missing, name, &mut pair)?;
+            let gear = RexsGear::read(model, gear, missing, name, &mut pair.remarks)?;
             pair.gears.push(gear);
         }
         if let Some(stage) = stage {
@@ -326,15 +323,6 @@ impl<'a> RexsPair<'a> {
             [Some(other), None] => [None, sum(other)?],
             _ => [None; 2],
         })
-    }
-
-    /// Notes components whose attributes must be reported, each once.
-    pub(super) fn concern(&mut self, components: impl IntoIterator<Item = &'a Component>) {
-        for component in components {
-            if !self.components.iter().any(|other| std::ptr::eq(*other, component)) {
-                self.components.push(component);
-            }
-        }
     }
 
     /// A value that both gears must have in common; what one of them does not say, the other's stands for.

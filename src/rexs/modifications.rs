@@ -1,6 +1,6 @@
 //! Modifications of flanks (from 1.2 on): those that a study has a family for. Must not know: the text of a study.
 
-use super::gear::RexsPair;
+use super::around::Remarks;
 use super::model::{Component, Model, Said};
 use super::ways::LENGTHS;
 
@@ -37,7 +37,7 @@ pub(super) fn modifications<'a>(
     model: &'a Model,
     flanks: &[&'a Component],
     tip_diameter: Option<Said>,
-    pair: &mut RexsPair<'a>,
+    remarks: &mut Remarks<'a>,
 ) -> Vec<Modification> {
     let of = |flank: &Component| -> Vec<&'a Component> {
         let found = model.related(&["reference"], &flank.id, "origin", &["referenced"]);
@@ -48,7 +48,7 @@ pub(super) fn modifications<'a>(
     };
     let of_flanks: Vec<Vec<&Component>> = flanks.iter().map(|flank| of(flank)).collect();
     let all: Vec<&Component> = of_flanks.iter().flatten().copied().collect();
-    pair.concern(all.iter().copied());
+    remarks.concern(all.iter().copied());
     let mut read = Vec::new();
     let mut kinds: Vec<&str> = all.iter().map(|component| component.kind.as_str()).collect();
     kinds.sort_unstable();
@@ -67,7 +67,7 @@ pub(super) fn modifications<'a>(
                     component.is_not_supported();
                 }
                 let ids: Vec<&str> = alike.iter().map(|component| component.id.as_str()).collect();
-                pair.notes.push(
+                remarks.notes.push(
                     format!("Not supported as it is: the {kind} {}.", ids.join(" and ")).escape_debug().to_string(),
                 );
             }
