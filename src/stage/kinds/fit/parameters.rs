@@ -2,10 +2,17 @@
 //!
 //! Must not know: what is met.
 
-use super::tables;
 use declare::error::Diagnostic;
 use declare::record::varied::{Axis, Form, Spread, Values, Varied};
 use declare::units::showing;
+
+/// The column of a parameter's standard deviation.
+pub fn deviation_name(name: &str) -> String {
+    format!("{name}_standard_deviation")
+}
+
+/// Columns of `solutions` that no parameter can be called.
+const RESERVED: [&str; 8] = ["solution", "sum_of_squares", "largest", "meets", "starts", "steps", "settled", "edge"];
 
 /// A field that is fitted.
 #[derive(Clone, Debug)]
@@ -33,8 +40,8 @@ impl Parameter {
 pub fn parameters(axes: &[Axis]) -> Result<Vec<Parameter>, Diagnostic> {
     let mut parameters: Vec<Parameter> = Vec::new();
     for axis in axes {
-        let clashes = tables::RESERVED.contains(&axis.name.as_str())
-            || axes.iter().any(|other| tables::deviation_name(&other.name) == axis.name);
+        let clashes =
+            RESERVED.contains(&axis.name.as_str()) || axes.iter().any(|other| deviation_name(&other.name) == axis.name);
         if clashes {
             let message = format!("`{}` is a column of the table `solutions`; take another name", axis.name);
             return Err(Diagnostic::new(message).at(axis.place));

@@ -3,7 +3,7 @@
 //! Must not know: how anything in them is found.
 
 use super::goal::Goal;
-use super::parameters::Parameter;
+use super::parameters::{Parameter, deviation_name};
 use super::search::Solution;
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
@@ -186,15 +186,6 @@ pub fn solutions<'a>(columns: &[(String, String, String)], parameters: &[Paramet
     .flag("settled", settled, |row| row.solution.is_settled())
     .text("edge", edge, |row| row.edge.clone())
 }
-
-/// The column of a parameter's standard deviation.
-pub fn deviation_name(name: &str) -> String {
-    format!("{name}_standard_deviation")
-}
-
-/// Columns of `solutions` that no parameter can be called.
-pub const RESERVED: [&str; 8] =
-    ["solution", "sum_of_squares", "largest", "meets", "starts", "steps", "settled", "edge"];
 
 /// What came of the fit.
 pub struct Summary {

@@ -7,7 +7,7 @@ mod units;
 
 use self::subject::{Proof, Subject, given, read_proof, read_subject};
 use super::printed::Printed;
-use super::rounded::Inside;
+use super::rounded::said::Inside;
 use super::stated::{Expected, Published};
 use super::verdict::{Comparison, Verdict};
 use crate::stage::Inputs;

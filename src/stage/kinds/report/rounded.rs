@@ -9,13 +9,12 @@
 //! is beyond both ends is looked at closer. A number that was stated once, and is used in several places, is one input. Must not know:
 //! verdicts, how a stage computes. Values in the row's unit.
 
-mod said;
+pub(super) mod said;
 mod search;
 
 use std::collections::BTreeMap;
 
-pub use self::said::Inside;
-use self::said::Range;
+use self::said::{Inside, Range};
 use self::search::{Goal, Place};
 use super::entry::ReportEntry;
 use crate::stage::rows::chain;

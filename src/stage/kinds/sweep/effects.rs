@@ -5,7 +5,7 @@
 //! Sums run in the order of the rows. Must not know: what a column means.
 
 use super::Sweep;
-use super::tables::{self, BestRow, Bin, EffectRow, MapCell, Quantile, Share};
+use super::tables::{self, BestRow, Bin, EffectRow, MapCell, QUANTILES, Quantile, Share};
 use crate::stage::RowCount;
 use crate::stage::rows::Column;
 use crate::stage::rows::computed::REASON;
@@ -19,7 +19,7 @@ use studygraph::table::schema::Schema;
 const SHOWN_BINS: usize = 32;
 /// The most values or strata that a map has of a field.
 const MOST_OF_MAP: usize = 40;
-pub const QUANTILES: [f64; 7] = [0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0];
+
 /// What of the rows is kept.
 pub struct Effects<'s> {
     sweep: &'s Sweep,

@@ -3,9 +3,11 @@
 //! Must not know: how any of it is counted.
 
 use super::Sweep;
-use super::effects::QUANTILES;
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
+
+/// Shares of the rows below the quantiles of an output.
+pub const QUANTILES: [f64; 7] = [0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0];
 
 /// One of the best rows: its fields and its outputs as shown.
 pub struct BestRow {
