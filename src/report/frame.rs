@@ -5,8 +5,9 @@
 use super::scale::{Scale, rounded_down};
 
 /// How large a figure is as a file of its own.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Size {
+    #[default]
     Page,
     /// A column of a journal.
     Column,

@@ -2,10 +2,10 @@
 //!
 //! Must not know: how a curve is found.
 
-use super::friction::{self, Left};
-use super::pressures::{self, CellRow, Contacts};
+use super::pressures::{self, CellRow};
+use super::rows::{Contacts, Left};
 use super::tables::{cost, curve, harmonics, summary};
-use super::{MOST_AT_ONCE, Ste, samples};
+use super::{MOST_AT_ONCE, Ste, friction, samples};
 use crate::stage::{Ahead, Demand, Estimate, RowCount, common, names, root_influences, simpler};
 use declare::work::Work;
 use gearmesh::gear::mesh::answers::curve::Point;

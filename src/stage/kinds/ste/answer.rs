@@ -4,34 +4,13 @@
 
 use std::time::Instant;
 
-use super::friction::Lost;
-use super::tables::Found;
+use super::rows::{Answer, Found};
 use super::{Named, Ste, pressures};
 use crate::stage::neglected_corners::Estimated;
 use declare::error::Failure;
-use gearmesh::gear::mesh::answers::contact_law_error::ContactLawError;
-use gearmesh::gear::mesh::answers::corner_stretches::CornerStretches;
-use gearmesh::gear::mesh::answers::curve::{Summary, Wanted};
+use gearmesh::gear::mesh::answers::curve::Wanted;
 use gearmesh::gear::mesh::answers::sampling::{Against, Sampled};
 use gearmesh::gear::mesh::{Mesh, MeshedDesign, Settings};
-
-/// One design under one torque; its points are in the table `curve`.
-pub struct Answer {
-    pub summary: Summary,
-    pub settings: Settings,
-    pub error: f64,
-    pub seconds: f64,
-    /// Where sharp corners are in contact, if pressures were asked for.
-    pub cornered: Option<CornerStretches>,
-    /// As [`Loaded::contact_doubt`] has it.
-    pub doubt: Option<ContactLawError>,
-    /// Tip corners that `corner_contact: none` leaves out, where a warning is heard.
-    pub left_out: Option<Estimated>,
-    /// What friction takes, if that was asked for.
-    pub lost: Option<Lost>,
-    /// Nominal root stress by ISO 6336-3 \[Pa\], where it was asked for and holds.
-    pub iso6336: [f64; 2],
-}
 
 /// What is wanted of a curve.
 pub struct WantedHere {

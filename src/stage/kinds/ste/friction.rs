@@ -2,7 +2,7 @@
 //!
 //! Must not know: how any coefficient is found.
 
-use super::tables::{Keyed, Load, PointRow, keyed};
+use super::rows::{Keyed, Load, Lost, PointRow, keyed};
 use super::{Named, Ste};
 use crate::stage::{Context, Demand, names};
 use declare::Declared;
@@ -12,7 +12,7 @@ use declare::record::Record;
 use declare::units::ANGULAR_SPEED;
 use gearmesh::gear::contact::CornerContact;
 use gearmesh::gear::friction::{Law, Limit};
-use gearmesh::gear::mesh::answers::friction::{Loss, Place};
+use gearmesh::gear::mesh::answers::friction::Place;
 use gearmesh::gear::mesh::cycle::flank_friction;
 use gearmesh::gear::mesh::{Loaded, Mesh};
 use gearmesh::gear::modification::Design;
@@ -60,16 +60,6 @@ const OF_SUMMARY: [&str; 6] = [
 pub const MEAN_COEFFICIENT: &str = "mean_friction_coefficient";
 /// Columns of the curve.
 const OF_CURVE: [&str; 2] = ["friction_power_loss", "gear_torque"];
-
-/// What a curve loses.
-pub struct Lost {
-    loss: Loss,
-    /// Of halves of the load.
-    geometric: f64,
-}
-
-/// What is lost at a position \[W\], and what the gear is left with \[N m\].
-pub type Left = [f64; 2];
 
 impl Ste {
     /// A design under a torque, with friction in the balance where that is stated.

@@ -2,12 +2,11 @@
 //!
 //! Must not know: how a pressure is found.
 
-use super::tables::{Keyed, Load, PointRow, keyed};
+use super::rows::{Contacts, Keyed, Load, PAIRS as COUNT, PointRow, keyed};
 use crate::stage::names::{curve, summary};
 use crate::stage::{Context, Demand};
 use gearmesh::gear::mesh::answers::corner_stretches::CornerStretches;
 use gearmesh::gear::mesh::answers::face_map::Cell;
-use gearmesh::gear::mesh::answers::pressure::LineContact;
 use gearmesh::gear::mesh::answers::quantities::{Need, QUANTITIES};
 use gearmesh::gear::mesh::{Loaded, Mesh};
 use studygraph::table::columns::Columns;
@@ -37,7 +36,7 @@ macro_rules! pairs {
 }
 
 /// All that a position may have: with corner contact there is one before A.
-const PAIRS: [OfPair; 7] = pairs![
+const PAIRS: [OfPair; COUNT] = pairs![
     -1 "coming" "the pair before A",
     0 "newest" "the pair that came into contact last",
     1 "second" "the pair one pitch ahead of the newest",
@@ -46,9 +45,6 @@ const PAIRS: [OfPair; 7] = pairs![
     4 "fifth" "the pair four pitches ahead of the newest",
     5 "sixth" "the pair five pitches ahead of the newest",
 ];
-
-/// The contacts of all pairs of a position, as [`PAIRS`] has them.
-pub type Contacts = [LineContact; PAIRS.len()];
 
 /// Columns of the summary beside those of [`QUANTITIES`].
 const PAIR: &str = "pressure_pair";

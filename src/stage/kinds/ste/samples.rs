@@ -3,7 +3,7 @@
 //! A mean, a variance or an extreme of a few samples is not that of the curve; these are here to be put beside printed
 //! ones. Must not know: how a position is solved.
 
-use super::tables::{Keyed, keyed};
+use super::rows::{Keyed, keyed};
 use gearmesh::gear::mesh::Loaded;
 use studygraph::table::columns::Columns;
 

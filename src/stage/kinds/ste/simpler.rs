@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 
 use super::Ste;
-use super::tables::{Keyed, Load};
+use super::rows::{Keyed, Load};
 use crate::stage::{Context, simpler};
 use declare::error::Failure;
 use declare::number::significant;

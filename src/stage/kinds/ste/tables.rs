@@ -2,45 +2,17 @@
 //!
 //! Must not know: how a curve is found.
 
-use super::answer::Answer;
-use super::friction::{self, Left};
-use super::pressures;
-use super::pressures::Contacts;
-use crate::stage::cases::{DEVIATIONS, Deviation};
+use super::rows::{Found, Keyed, OfCurve, PointRow, keyed};
+use super::{friction, pressures};
 use crate::stage::names;
 use gearmesh::gear::geometry::Side;
 use gearmesh::gear::mesh::answers::contact_law_error::ContactLawError;
-use gearmesh::gear::mesh::answers::curve::Point;
 use gearmesh::gear::mesh::answers::quantities::{Need, QUANTITIES, Quantity};
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
 
 pub const HARMONICS: &str = "harmonics";
 pub const COST: &str = "cost";
-
-/// Torque, and by how much the pair is off as it is made and mounted.
-#[derive(Clone, Copy)]
-pub struct Load {
-    /// On the pinion \[N m\].
-    pub torque: f64,
-    pub deviation: Deviation,
-}
-
-/// Design, load, and what they gave.
-pub type Keyed<'a, T = Answer> = (&'a str, Load, T);
-
-/// The columns that say which curve a row is of; those of deviations are there where they are stated.
-pub fn keyed<'a, T>(name: &str, description: &str, stated: &[usize]) -> Columns<Keyed<'a, T>> {
-    let columns = Columns::new(name, description)
-        .text("design", "Name of the design.", |row: &Keyed<'a, T>| row.0)
-        .key()
-        .float("torque", "N m", "Torque on the pinion.", |row| row.1.torque)
-        .key();
-    stated.iter().fold(columns, |columns, &field| {
-        let (name, description) = DEVIATIONS[field];
-        columns.float(name, "um", description, move |row| row.1.deviation.of_fields[field]).key()
-    })
-}
 
 /// Those of friction are there where it is stated.
 pub fn summary<'a>(stated: &[usize], rubs: bool) -> Columns<Keyed<'a>> {
@@ -119,20 +91,6 @@ pub fn cost<'a>(stated: &[usize]) -> Columns<Keyed<'a>> {
         .on_demand()
 }
 
-/// A point of a curve.
-#[derive(Clone, Copy)]
-pub struct OfCurve<'a> {
-    /// Which it is, from 1.
-    number: usize,
-    point: &'a Point,
-    /// Of its pairs, where somebody wants them.
-    pub contacts: Option<&'a Contacts>,
-    /// By friction, where somebody wants it.
-    pub left: Option<Left>,
-}
-
-pub type PointRow<'a> = Keyed<'a, OfCurve<'a>>;
-
 /// By far the longest tables. Columns of friction are there where it is stated.
 pub fn curve<'a>(stated: &[usize], rubs: bool) -> Columns<PointRow<'a>> {
     let description = "Transmission error over one mesh cycle, with its extrema. Where the number of pairs changes there are \
@@ -186,13 +144,6 @@ pub fn curve<'a>(stated: &[usize], rubs: bool) -> Columns<PointRow<'a>> {
         .but(Column::on_demand);
     let columns = pressures::of_curve(columns);
     if rubs { friction::of_curve(columns) } else { columns }
-}
-
-/// The points of a curve, and of each the contacts of its pairs and what friction leaves, or none.
-pub struct Found {
-    pub points: Vec<Point>,
-    pub contacts: Vec<Contacts>,
-    pub left: Vec<Left>,
 }
 
 /// The points of curves, in the order of the keys, or the table sorts every row.

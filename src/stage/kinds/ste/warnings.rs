@@ -2,7 +2,7 @@
 //!
 //! Must not know: how a curve is found.
 
-use super::tables::{Keyed, Load};
+use super::rows::{Keyed, Load};
 use super::{Named, Ste};
 use crate::stage::contact_law_error::ReportedContactLawError;
 use crate::stage::neglected_corners::{self, REMEDY, WithoutCorners};
