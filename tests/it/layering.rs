@@ -3,6 +3,7 @@
 //!
 //! Eight of nine Rust programs measured have import cycles between their modules; nothing but a test prevents them.
 
+mod cycles;
 mod dangerous;
 mod owners;
 mod source;
@@ -240,12 +241,18 @@ fn reach(layers: Layers, layer: &str) -> BTreeSet<&'static str> {
     reached
 }
 
-/// Paths that begin with `super`, as seen from the crate's root.
-fn relative(path: &str, code: &str) -> Vec<(usize, Vec<String>)> {
+/// The module of a file.
+fn module_of(path: &str) -> Vec<&str> {
     let mut module: Vec<&str> = path.trim_end_matches(".rs").split('/').collect();
     if matches!(module.last(), Some(&("mod" | "lib" | "main"))) {
         module.pop();
     }
+    module
+}
+
+/// Paths that begin with `super`, as seen from the crate's root.
+fn relative(path: &str, code: &str) -> Vec<(usize, Vec<String>)> {
+    let module = module_of(path);
     let mut found = Vec::new();
     for (line, path) in paths(code, "super") {
         let ups = 1 + path.iter().take_while(|part| *part == "super").count();
