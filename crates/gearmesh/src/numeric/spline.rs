@@ -4,24 +4,16 @@
 //! off by fades by 2 − √3 from point to point. Source: de Boor, A Practical Guide to Splines, chapter IV. Must not know: what
 //! is interpolated.
 
-mod sum;
 #[cfg(test)]
 mod tests;
 
-/// A piecewise cubic with two continuous derivatives, of sums but at a few places, between the first and the last of its knots.
+/// A piecewise cubic with two continuous derivatives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {
     /// Ascending.
     knots: Vec<f64>,
-    /// The lower end of each interval, and the cubic of the distance from there: beside each other, since a search reads both.
-    pieces: Vec<[f64; 5]>,
-    index: Index,
-    /// The least second derivative.
-    least_bend: f64,
-    /// The first and the last knot.
-    between: [f64; 2],
-    /// Intervals at whose lower end derivatives may jump, ascending; of sums.
-    jumps: Vec<usize>,
+    /// The coefficients of each interval over the distance from its lower end.
+    cubics: Vec<[f64; 4]>,
 }
 
 impl Spline {
@@ -39,54 +31,15 @@ impl Spline {
         let cubic = |at: usize| {
             let (step, secant) = (steps[at], secants[at]);
             let bend = (slopes[at] + slopes[at + 1] - 2.0 * secant) / step;
-            [knots[at], values[at], slopes[at], (secant - slopes[at]) / step - bend, bend / step]
+            [values[at], slopes[at], (secant - slopes[at]) / step - bend, bend / step]
         };
-        let pieces = (0..steps.len()).map(cubic).collect();
-        let mut spline = Self {
-            knots: knots.to_vec(),
-            pieces,
-            index: Index::new(knots),
-            least_bend: 0.0,
-            between: [knots[0], knots[knots.len() - 1]],
-            jumps: Vec::new(),
-        };
-        spline.find_least_bend();
-        spline
-    }
-
-    fn find_least_bend(&mut self) {
-        let mut least = f64::INFINITY;
-        self.visit_bends(|_, bend| least = least.min(bend));
-        self.least_bend = least;
-    }
-
-    /// Visits the knots, with the second derivative at each, between which it is straight; where it jumps, with both.
-    #[inline]
-    pub fn visit_bends(&self, mut visit: impl FnMut(f64, f64)) {
-        let mut jumps = self.jumps.iter();
-        let mut jump = jumps.next();
-        for (at, piece) in self.pieces.iter().enumerate() {
-            if jump == Some(&at) {
-                let [from, _, _, bend, third] = self.pieces[at - 1];
-                visit(piece[0], 2.0 * bend + 6.0 * (piece[0] - from) * third);
-                jump = jumps.next();
-            }
-            visit(piece[0], 2.0 * piece[3]);
-        }
-        let last = self.knots[self.pieces.len()];
-        visit(last, self.rates(last)[2]);
-    }
-
-    /// The least second derivative.
-    #[must_use]
-    pub fn least_bend(&self) -> f64 {
-        self.least_bend
+        Self { knots: knots.to_vec(), cubics: (0..steps.len()).map(cubic).collect() }
     }
 
     /// The first and the last knot.
     #[must_use]
     pub fn ends(&self) -> [f64; 2] {
-        self.between
+        [self.knots[0], self.knots[self.knots.len() - 1]]
     }
 
     /// Its knots, ascending.
@@ -99,25 +52,15 @@ impl Spline {
     #[must_use]
     #[inline]
     pub fn rates(&self, x: f64) -> [f64; 3] {
-        let [from, c0, c1, c2, c3] = *self.piece(x);
-        let t = x - from;
+        let at = interval(&self.knots, x);
+        let ([c0, c1, c2, c3], t) = (self.cubics[at], x - self.knots[at]);
         [c0 + t * (c1 + t * (c2 + t * c3)), c1 + t * (2.0 * c2 + 3.0 * t * c3), 2.0 * c2 + 6.0 * t * c3]
-    }
-
-    /// The coefficients over the distance from `x` of the cubic that `inside` lies on.
-    #[must_use]
-    pub fn cubic(&self, x: f64, inside: f64) -> [f64; 4] {
-        let [from, c0, c1, c2, c3] = *self.piece(inside);
-        let t = x - from;
-        [c0 + t * (c1 + t * (c2 + t * c3)), c1 + t * (2.0 * c2 + 3.0 * t * c3), c2 + 3.0 * t * c3, c3]
     }
 
     /// The value at `x`.
     #[must_use]
     pub fn value(&self, x: f64) -> f64 {
-        let [from, c0, c1, c2, c3] = *self.piece(x);
-        let t = x - from;
-        c0 + t * (c1 + t * (c2 + t * c3))
+        self.rates(x)[0]
     }
 
     /// The slope at every knot.
@@ -125,53 +68,12 @@ impl Spline {
     pub fn slopes(&self) -> Vec<f64> {
         self.knots.iter().map(|knot| self.rates(*knot)[1]).collect()
     }
-
-    #[inline]
-    fn piece(&self, x: f64) -> &[f64; 5] {
-        &self.pieces[self.index.interval(self.pieces.len(), x, |at| self.pieces[at][0])]
-    }
 }
 
-/// Where to look for the interval of a place: equal cells, as many as there are intervals, and the interval in which each begins.
-#[derive(Clone, Debug, PartialEq)]
-struct Index {
-    first: Vec<u32>,
-    from: f64,
-    per_length: f64,
-}
-
-impl Index {
-    #[allow(clippy::cast_possible_truncation)] // no spline has so many knots
-    fn new(knots: &[f64]) -> Self {
-        let count = knots.len() - 1;
-        let length = knots[count] - knots[0];
-        let mut interval = 0;
-        let first = (0..count).map(|cell| {
-            let begins = knots[0] + length * cell as f64 / count as f64;
-            while interval + 1 < count && knots[interval + 1] <= begins {
-                interval += 1;
-            }
-            interval as u32
-        });
-        Self { first: first.collect(), from: knots[0], per_length: count as f64 / length }
-    }
-
-    /// The interval of a place, the outermost one outside of all, of so many that begin there.
-    #[inline]
-    fn interval(&self, count: usize, x: f64, begins: impl Fn(usize) -> f64) -> usize {
-        let last = count - 1;
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // what is too large is the last one
-        let cell = (((x - self.from) * self.per_length) as u32 as usize).min(last);
-        let mut interval = self.first[cell] as usize;
-        while interval < last && begins(interval + 1) <= x {
-            interval += 1;
-        }
-        // Rounding may have put it into the next cell.
-        while interval > 0 && x < begins(interval) {
-            interval -= 1;
-        }
-        interval
-    }
+/// The interval of a place, the outermost one outside of all.
+#[inline]
+fn interval(knots: &[f64], x: f64) -> usize {
+    knots[1..knots.len() - 1].partition_point(|knot| *knot <= x)
 }
 
 /// The slope at every knot.
@@ -217,14 +119,13 @@ fn slopes(steps: &[f64], secants: &[f64]) -> Vec<f64> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hermite {
     knots: Vec<f64>,
-    index: Index,
 }
 
 impl Hermite {
     /// Between these, which are strictly ascending and two or more.
     #[must_use]
     pub fn new(knots: &[f64]) -> Self {
-        Self { knots: knots.to_vec(), index: Index::new(knots) }
+        Self { knots: knots.to_vec() }
     }
 
     /// All of them.
@@ -252,7 +153,7 @@ impl Hermite {
     /// intervals those of the outermost knot.
     #[must_use]
     pub fn weights(&self, x: f64) -> (usize, [f64; 4]) {
-        let at = self.index.interval(self.knots.len() - 1, x, |at| self.knots[at]);
+        let at = interval(&self.knots, x);
         let step = self.knots[at + 1] - self.knots[at];
         let t = ((x - self.knots[at]) / step).clamp(0.0, 1.0);
         let (s, end) = (1.0 - t, t * t * (3.0 - 2.0 * t));

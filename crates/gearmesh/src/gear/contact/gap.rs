@@ -8,12 +8,10 @@
 use super::separation::{Facing, Touch};
 use crate::gear::geometry::{GearPair, Side};
 use crate::gear::modification::section::Profiles;
-use bends::{crests, may_be_rough};
 use beyond::Turn;
 use branch_and_bound::Search;
 use outline::Outline;
 
-mod bends;
 mod beyond;
 mod branch_and_bound;
 mod convex;
@@ -61,8 +59,6 @@ pub struct Gaps<'a> {
     modified: bool,
     /// Whether the gap has one lowest place, since no profile bends back, or less than the separation bends.
     is_convex: bool,
-    /// On how many stretches both flanks bend back more than the separation bends, where one is a spline; one where they only kink back.
-    crests: usize,
 }
 
 #[derive(Clone, Debug)]
@@ -95,8 +91,7 @@ impl<'a> Gaps<'a> {
     fn of(pair: &GearPair, [pinion, gear]: &Profiles<'a>) -> Self {
         let facings = [Side::Gear, Side::Pinion].map(|side| Facing::new(pair, side));
         let (point, flank) = (Outline::new(gear, facings[0], true), Outline::new(pinion, facings[0], false));
-        let are_convex = point.is_convex() && flank.is_convex();
-        let is_convex = are_convex && !may_be_rough(&facings[0], &point, &flank);
+        let is_convex = point.is_convex() && flank.is_convex();
         let (flank_too, point_too) = (point.mirrored(facings[1]), flank.mirrored(facings[1]));
         let turn = Turn::default();
         let mut ways = [
@@ -107,8 +102,7 @@ impl<'a> Gaps<'a> {
         for way in ways.iter_mut().filter(|way| modified && way.facing.round > 0.0) {
             way.turn = way.turned();
         }
-        let crests = if is_convex { 0 } else { crests(&ways).max(usize::from(!are_convex && ways[0].is_sampled())) };
-        Self { ways, modified, is_convex, crests }
+        Self { ways, modified, is_convex }
     }
 
     /// For a search that needs no convexity.
@@ -185,13 +179,8 @@ impl<'a> Gaps<'a> {
     /// Whether a profile is a spline through so many points that no few polynomials follow the gap.
     #[must_use]
     pub fn is_sampled(&self) -> bool {
-        self.ways[0].is_sampled()
-    }
-
-    /// Between how many crests contact goes over on rough flanks.
-    #[must_use]
-    pub fn crests(&self) -> usize {
-        self.crests
+        let Way { point, flank, .. } = &self.ways[0];
+        point.is_sampled || flank.is_sampled
     }
 
     /// Path positions in `window` at which the gap is not smooth: ends of contact and of reliefs, and where the flanks
@@ -204,8 +193,8 @@ impl<'a> Gaps<'a> {
         known.extend(inner.filter(|s| *s > window.0 && *s < window.1));
         known.sort_by(f64::total_cmp);
         known.dedup();
-        // Where the contact goes over from one crest to another is told by nothing: there are as many such places as crests.
-        if !self.modified || self.crests > 0 {
+        // Contact passes from crest to crest of a sampled flank; a search for these positions would cost more than the curve.
+        if !self.modified || self.is_sampled() {
             return known;
         }
         let (start, end) = (facing.start, facing.end);

@@ -174,13 +174,6 @@ impl Facing {
         }
     }
 
-    /// The least d²S/de² at any nominal point of contact \[1/m\]: it is T(T − ρ)/(r_b²ρ), with T between the points where the line of action
-    /// touches the base circles, which falls towards the end.
-    #[must_use]
-    pub fn least_bend(&self) -> f64 {
-        self.on_line(self.end).bend
-    }
-
     /// d³S/de³ at the nominal point of contact \[1/m²\].
     #[must_use]
     pub fn bend_slope(&self, nominal: f64) -> f64 {

@@ -22,8 +22,6 @@ const PLACE: f64 = 1e-5;
 /// nodes themselves miss more of the others.
 const FEW_PLACE: f64 = 1e-3;
 const MOST: usize = 2;
-/// The same where there are more extrema than nodes, which miss 0.1 to 1 % of a peak-to-peak value.
-const ROUGH_PLACE: f64 = 3e-2;
 
 /// Nodes and weights on the unit interval.
 #[derive(Clone, Debug)]
@@ -118,8 +116,6 @@ pub enum Refining {
     Each,
     /// Of a function with kinks between its nodes: the few that nodes say are.
     Few,
-    /// Of a function with more of them than nodes: the same few, and their places less closely.
-    Roughly,
 }
 
 /// A function over the whole cycle, by position.
@@ -214,9 +210,8 @@ impl Trace {
             }
         }
         highest.sort_by(|one, other| other.0.total_cmp(&one.0));
-        let place = if refining == Refining::Roughly { ROUGH_PLACE } else { FEW_PLACE };
         for (_, pairs, near) in highest.into_iter().take(MOST) {
-            let found = near.maximum(place, |position| sign * function(position, pairs));
+            let found = near.maximum(FEW_PLACE, |position| sign * function(position, pairs));
             if found.1 > best.value {
                 best = Extremum { position: found.0, pairs, value: found.1 };
             }

@@ -244,10 +244,6 @@ impl Modification for Profile {
         self.0.spline.knots()
     }
 
-    fn profile_spline(&self) -> Option<&Spline> {
-        Some(&self.0.spline)
-    }
-
     fn varies_along_profile(&self) -> bool {
         true
     }

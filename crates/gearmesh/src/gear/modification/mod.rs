@@ -32,7 +32,6 @@ use std::sync::Arc;
 use self::flank::Flank;
 use super::geometry::{GearPair, Side};
 use crate::numeric::quadratic::Quadratic;
-use crate::numeric::spline::Spline;
 use declare::declared::Declared;
 use declare::error::Diagnostic;
 use declare::parameter::{FILE, Field, Member, Shape, count};
@@ -214,12 +213,6 @@ pub trait Modification: Debug + Send + Sync {
     /// continuous.
     fn profile_knots(&self) -> &[f64] {
         &[]
-    }
-
-    /// The spline through [`Modification::profile_knots`], over the roll angle, that the depth is: held at both its ends. It saves time
-    /// and nothing else.
-    fn profile_spline(&self) -> Option<&Spline> {
-        None
     }
 
     /// Whether [`Modification::depth`] may differ from 0.

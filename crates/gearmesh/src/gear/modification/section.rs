@@ -6,7 +6,6 @@
 use super::{Design, Modification, NamedModification};
 use crate::gear::geometry::Side;
 use crate::numeric::quadratic::Quadratic;
-use crate::numeric::spline::Spline;
 
 /// A modification in one section.
 #[derive(Clone, Copy, Debug)]
@@ -59,12 +58,6 @@ impl<'a> Section<'a> {
     #[must_use]
     pub fn knots(&self) -> &'a [f64] {
         self.modification.profile_knots()
-    }
-
-    /// The spline through these that it is, held at both its ends, if it is told.
-    #[must_use]
-    pub fn spline(&self) -> Option<&'a Spline> {
-        if self.z.is_some() { None } else { self.modification.profile_spline() }
     }
 
     /// Roll angles at which that is not smooth.

@@ -11,13 +11,6 @@ use crate::numeric::crossing::{bracketed, crossing};
 
 /// The last term of a Taylor series that ends a search, over the separation: what it leaves is smaller still.
 const CLOSE: f64 = 1e-12;
-/// The same on a spline, whose third derivative is another one behind its next knot: what may be left of the gap to fall \[m\], of which the
-/// series tells all but a hundredth.
-const NEGLIGIBLE: f64 = 1e-11;
-/// The farthest step of a search on a spline, over the length of the path.
-const FARTHEST: f64 = 1.0 / 16.0;
-/// The most steps of a search on a spline, whose second derivative may be thirty times as large at the next knot.
-const MOST_STEPS: usize = 24;
 /// The most steps of a search for the least gap; one or two are taken.
 const STEPS: usize = 8;
 /// Those of a search for the end of a stretch, and where it stops, over the length of the path: the error of what is
@@ -103,13 +96,7 @@ impl Way<'_> {
             if rates[1] >= 0.0 {
                 return best;
             }
-            if self.is_sampled() {
-                if let Some(gap) = self.fall_on_spline(nominal, from, pieces, rates) {
-                    return Some((gap, Spot::Beside { side: self.side, pieces, place: PieceLocation::Inside }));
-                }
-            } else if let Some(gap) =
-                self.fall(nominal, from, pieces, rates, self.third(nominal, from, &touch, pieces[1]))
-            {
+            if let Some(gap) = self.fall(nominal, from, pieces, rates, self.third(nominal, from, &touch, pieces[1])) {
                 return Some((gap, Spot::Beside { side: self.side, pieces, place: PieceLocation::Inside }));
             }
             let (end, at_end, ended) = self.piece_end(nominal, from, &touch, pieces);
@@ -147,10 +134,6 @@ impl Way<'_> {
         let touch = self.facing.on_line(nominal);
         let third = self.third_on_line(nominal, &touch, pieces[1]);
         self.fall(nominal, 0.0, pieces, self.pull(nominal, 0.0, &touch, pieces), third)
-    }
-
-    pub(super) fn is_sampled(&self) -> bool {
-        self.point.is_sampled || self.flank.is_sampled
     }
 
     /// About the third derivative of the gap where a search begins, for the length of a step: known on the line of action.
@@ -200,51 +183,6 @@ impl Way<'_> {
             if rest.abs() <= CLOSE * touch.separation {
                 return (place >= first && curvature >= floor).then_some(gap + 0.5 * slope * left + rest);
             }
-        }
-        None
-    }
-
-    /// The same where a flank is a spline: between the last place where it falls and the first where it rises, by Newton's method or, where
-    /// that leads out of there, by halving.
-    fn fall_on_spline(
-        &self,
-        nominal: f64,
-        from: f64,
-        pieces: [usize; 2],
-        [_, mut slope, mut bend]: [f64; 3],
-    ) -> Option<f64> {
-        let last = self.point.cuts[pieces[0] + 1] - nominal;
-        let wall = self.flank.cuts[pieces[1] + 1];
-        let farthest = FARTHEST * (self.facing.end - self.facing.start);
-        let (mut at, mut low, mut high) = (from, from, f64::INFINITY);
-        let mut third = if from > 0.0 { 0.0 } else { self.facing.bend_slope(nominal) };
-        for _ in 0..MOST_STEPS {
-            let newton = -slope / bend;
-            let step = newton * (1.0 - (0.5 * third * newton / bend).clamp(-0.5, 0.5));
-            let next = (at + step).min(at + farthest);
-            let next = if next > low && next < high { next } else { 0.5 * (low + high.min(last)) };
-            if next > last {
-                return None;
-            }
-            let touch = self.facing.touch(nominal + next, next);
-            if touch.curvature > wall {
-                return None;
-            }
-            let before = (at, bend);
-            let gap;
-            (at, [gap, slope, bend]) = (next, self.pull(nominal, next, &touch, pieces));
-            if slope < 0.0 {
-                low = at;
-            } else {
-                high = at;
-            }
-            let left = -slope / bend;
-            // Less than its own share of which another step would change.
-            if (slope * left).abs() <= NEGLIGIBLE {
-                let third = (bend - before.1) / (at - before.0);
-                return Some(gap + 0.5 * slope * left + third * left * left * left / 6.0);
-            }
-            third = 0.0;
         }
         None
     }

@@ -5,13 +5,9 @@
 use crate::gear::contact::separation::Facing;
 use crate::gear::modification::section::Section;
 use crate::numeric::quadratic::Quadratic;
-use crate::numeric::spline::Spline;
 
-mod bends;
 mod cells;
-mod known;
 pub(super) use cells::{Cells, Underestimator};
-use known::Known;
 
 /// Samples of a piece that may be a wave: enough for sixteen humps.
 const WAVE_SAMPLES: usize = 64;
@@ -28,10 +24,13 @@ const BEND: f64 = 1e-12;
 const KINK: f64 = 1e-5;
 /// Roundings of a position.
 const ROUNDINGS: f64 = 4.0;
-/// How far from the ends of a piece it is sure to be that piece, over its length.
-const INSIDE: f64 = 1e-9;
 /// Distance of the points from which slopes of a profile are taken, in pieces.
 const STEP: f64 = 1e-3;
+
+/// Shares of a cell at which the derivatives of a profile determine a cubic.
+const TAYLOR: [f64; 2] = [0.25, 0.75];
+/// Largest error of that cubic, as a share of the depth there.
+const CUBIC_TOLERANCE: f64 = 1e-12;
 
 /// The depths of one profile against positions that count as those of [`Facing`].
 #[derive(Clone, Debug)]
@@ -44,7 +43,6 @@ pub(super) struct Outline<'a> {
     pieces: Vec<Piece>,
     /// Whether it is, in part, a spline through many points.
     pub(super) is_sampled: bool,
-    spline: Option<Known<'a>>,
     /// The roll angle at the position 0, and by how much it grows with the position.
     rolls: [f64; 2],
     /// Of profiles that may bend back.
@@ -55,8 +53,6 @@ pub(super) struct Outline<'a> {
 #[derive(Clone, Copy, Debug)]
 struct Piece {
     shape: Convexity,
-    /// Whether it lies beyond the end of a spline.
-    is_held: bool,
     /// What it is against the position, where it is a quadratic.
     quadratic: Option<Quadratic>,
 }
@@ -100,13 +96,10 @@ impl<'a> Outline<'a> {
             cuts: vec![facing.start, facing.end],
             pieces: Vec::new(),
             is_sampled: parts.iter().any(|part| !part.knots().is_empty()),
-            spline: None,
             rolls: [0.0; 2],
             cells: Cells::default(),
         }
         .turning();
-        let ends = [facing.start, facing.end].map(|position| outline.roll(position));
-        outline.spline = Known::of(parts, [ends[0].min(ends[1]), ends[0].max(ends[1])]);
         for roll in parts.iter().flat_map(Section::breaks).copied() {
             let position = outline.position(roll);
             if position > facing.start && position < facing.end {
@@ -150,7 +143,6 @@ impl<'a> Outline<'a> {
             cuts,
             pieces,
             is_sampled: self.is_sampled,
-            spline: self.spline.clone(),
             rolls: self.rolls,
             cells: Cells::default(),
         }
@@ -190,34 +182,28 @@ impl<'a> Outline<'a> {
             if let Some(quadratic) = if whole { self.quadratic(ends) } else { None } {
                 cuts.push(ends[1]);
                 let shape = Convexity::of_quadratic(&quadratic, ends);
-                self.pieces.push(Piece { shape, is_held: false, quadratic: Some(quadratic) });
+                self.pieces.push(Piece { shape, quadratic: Some(quadratic) });
                 continue;
             }
-            if let Some(spline) = &self.spline {
-                // How far it bends back is known from its knots.
-                let [first, last] = spline.ends();
-                let middle = self.roll(share(ends, 1, 2));
-                let is_held = middle < first || middle > last;
+            if self.is_sampled {
                 cuts.push(ends[1]);
-                self.pieces.push(Piece { shape: Convexity::Convex, is_held, quadratic: None });
+                self.pieces.push(Piece { shape: Convexity::Other, quadratic: None });
                 continue;
             }
             let depths: [f64; WAVE_SAMPLES + 1] =
                 std::array::from_fn(|index| self.sum(share(ends, index, WAVE_SAMPLES)));
             let shape = Convexity::of(&depths);
-            if shape == Convexity::Other && !self.is_sampled {
+            if shape == Convexity::Other {
                 cuts.extend(turns(&depths).into_iter().map(|index| share(ends, index, WAVE_SAMPLES)));
                 cuts.push(ends[1]);
                 let first = self.pieces.len();
                 for ends in cuts[first..].windows(2) {
                     let depths: [f64; SAMPLES + 1] = std::array::from_fn(|index| self.sum(share(ends, index, SAMPLES)));
-                    self.pieces.push(Piece { shape: Convexity::of(&depths), is_held: false, quadratic: None });
+                    self.pieces.push(Piece { shape: Convexity::of(&depths), quadratic: None });
                 }
             } else {
                 cuts.push(ends[1]);
-                // The same of several splines.
-                let shape = if shape == Convexity::Other { Convexity::Convex } else { shape };
-                self.pieces.push(Piece { shape, is_held: false, quadratic: None });
+                self.pieces.push(Piece { shape, quadratic: None });
             }
         }
         self.cuts = cuts;
@@ -231,24 +217,30 @@ impl<'a> Outline<'a> {
     /// The cubic that the profile is between two positions on a piece and between its knots, over the distance from the first; none where it is
     /// another function.
     fn cubic(&self, piece: usize, ends: [f64; 2]) -> Option<[f64; 4]> {
-        let Piece { shape, quadratic, is_held } = &self.pieces[piece];
-        match (shape, quadratic, &self.spline) {
-            (Convexity::Zero, ..) => Some([0.0; 4]),
-            (_, Some(quadratic), _) => {
+        let Piece { shape, quadratic } = &self.pieces[piece];
+        match (shape, quadratic) {
+            (Convexity::Zero, _) => Some([0.0; 4]),
+            (_, Some(quadratic)) => {
                 let [value, slope, bend] = quadratic.rates(ends[0]);
                 Some([value, slope, 0.5 * bend, 0.0])
             }
-            (_, None, Some(spline)) => {
-                let [roll, inside] = [ends[0], share(&ends, 1, 2)].map(|position| self.roll(position));
-                if *is_held {
-                    return Some([spline.value(within(spline, inside)), 0.0, 0.0, 0.0]);
-                }
-                let [_, rate] = self.rolls;
-                let [value, slope, bend, third] = spline.cubic(roll, inside);
-                Some([value, slope * rate, bend * rate * rate, third * rate * rate * rate])
-            }
-            _ => cells::fitted(self, piece, ends),
+            (_, None) => self.fitted(piece, ends),
         }
+    }
+
+    /// The same from the derivatives at both [`TAYLOR`], if it has the value and the slope of the profile at the second.
+    fn fitted(&self, piece: usize, [from, to]: [f64; 2]) -> Option<[f64; 4]> {
+        let [first, second] = TAYLOR.map(|share| share * (to - from));
+        let [value, slope, bend] = self.known_rates(from + first, piece)?;
+        let [value_there, slope_there, bend_there] = self.known_rates(from + second, piece)?;
+        let width = second - first;
+        let (c2, c3) = (0.5 * bend, (bend_there - bend) / (6.0 * width));
+        let at = |t: f64| [value + t * (slope + t * (c2 + t * c3)), slope + t * (2.0 * c2 + 3.0 * t * c3)];
+        let [end, end_slope] = at(width);
+        let allowed = CUBIC_TOLERANCE * value.abs().max(value_there.abs()).max(width * slope.abs());
+        let is_cubic = (end - value_there).abs() <= allowed && width * (end_slope - slope_there).abs() <= allowed;
+        let [c0, c1] = at(-first);
+        is_cubic.then_some([c0, c1, c2 - 3.0 * first * c3, c3])
     }
 
     /// An underestimator of the profile between two positions on a piece that has no knot in between. The second derivative of each part counts as
@@ -315,10 +307,7 @@ impl<'a> Outline<'a> {
 
     fn sum(&self, position: f64) -> f64 {
         let roll = self.roll(position);
-        match &self.spline {
-            Some(spline) => spline.value(within(spline, roll)),
-            None => self.parts.iter().map(|part| part.depth(roll)).sum(),
-        }
+        self.parts.iter().map(|part| part.depth(roll)).sum()
     }
 
     /// The depth where a piece ends: none at all where a relief starts, whatever rounding makes of its place.
@@ -358,32 +347,14 @@ impl<'a> Outline<'a> {
     /// Of the parts, which all know theirs.
     #[inline]
     fn known_rates(&self, position: f64, piece: usize) -> Option<[f64; 3]> {
-        let [start, rate] = self.rolls;
-        let [depth, slope, bend] = if let Some(spline) = &self.spline {
-            let position = if let Known::Sum(_) = spline { self.inside(position, piece) } else { position };
-            let place = within(spline, start + rate * position);
-            if self.pieces[piece].is_held { [spline.value(place), 0.0, 0.0] } else { spline.rates(place) }
-        } else {
-            let roll = self.roll(position);
-            let inside = self.roll(0.5 * (self.cuts[piece] + self.cuts[piece + 1]));
-            self.parts.iter().try_fold([0.0; 3], |sum, part| {
-                let rates = part.rates(roll, inside)?;
-                Some([sum[0] + rates[0], sum[1] + rates[1], sum[2] + rates[2]])
-            })?
-        };
+        let [_, rate] = self.rolls;
+        let roll = self.roll(position);
+        let inside = self.roll(0.5 * (self.cuts[piece] + self.cuts[piece + 1]));
+        let [depth, slope, bend] = self.parts.iter().try_fold([0.0; 3], |sum, part| {
+            let rates = part.rates(roll, inside)?;
+            Some([sum[0] + rates[0], sum[1] + rates[1], sum[2] + rates[2]])
+        })?;
         Some([depth, slope * rate, bend * rate * rate])
-    }
-
-    /// The position, a little farther inside of its piece where it is at one of the ends, which may be kinks.
-    #[inline]
-    fn inside(&self, position: f64, piece: usize) -> f64 {
-        let ends = [self.cuts[piece], self.cuts[piece + 1]];
-        let inside = INSIDE * (ends[1] - ends[0]);
-        match ends.map(|end| (position - end).abs() < inside) {
-            [true, _] => ends[0] + inside,
-            [_, true] => ends[1] - inside,
-            _ => position,
-        }
     }
 
     fn sampled_rates(&self, position: f64, piece: usize) -> [f64; 3] {
@@ -400,12 +371,6 @@ impl<'a> Outline<'a> {
 /// A share of the way from one end to the other.
 fn share(ends: &[f64], index: usize, count: usize) -> f64 {
     ends[0] + (ends[1] - ends[0]) * index as f64 / count as f64
-}
-
-/// The nearest place of a spline.
-fn within(spline: &Spline, place: f64) -> f64 {
-    let [first, last] = spline.ends();
-    place.clamp(first, last)
 }
 
 fn largest(depths: &[f64]) -> f64 {

@@ -4,11 +4,11 @@
 
 use super::pressure::{LargestPressure, Pressed, largest_pressure, pressed};
 use super::root_stress::{LargestRootStress, largest_root_stress, root_stress};
-use super::walk::{follows_crests, refining, span_length, trace, walk};
+use super::walk::{refining, span_length, trace, walk};
 use crate::gear::geometry::Side;
 use crate::gear::mesh::equilibrium::beyond_model::BeyondModel;
 use crate::gear::mesh::equilibrium::load_case::LoadCase;
-use crate::gear::mesh::equilibrium::state::{Equilibrium, OUT_OF_REACH};
+use crate::gear::mesh::equilibrium::state::Equilibrium;
 use crate::gear::mesh::trace::{Extremum, NODES, Span, Trace};
 use crate::numeric::complementarity::PerSpring;
 use crate::numeric::harmonics;
@@ -146,7 +146,8 @@ pub(in crate::gear::mesh) fn curve_and_summary(case: &LoadCase, wanted: Wanted) 
     let (mut loaded, mut share) = (0.0, 0.0_f64);
     walk(case, span_length(case, wanted.harmonics), |span, states| {
         error.spans.push((*span, states.map(|state| state.transmission_error())));
-        loaded += loaded_length(case, span, states);
+        // They are the same all over the span, up to its ends.
+        loaded += (span.end - span.start) * states[1].loaded_pairs() as f64;
         share = states.iter().map(|state| largest_share(&state.balance.loads)).fold(share, f64::max);
         if !wanted.pressure && !wanted.root_stress {
             return extend(case, &mut points, span, states, wanted);
@@ -182,29 +183,6 @@ pub(in crate::gear::mesh) fn curve_and_summary(case: &LoadCase, wanted: Wanted) 
         largest_root_stress: largest_root_stress(case, &roots),
     };
     (points, summary)
-}
-
-/// The integral of the number of loaded pairs over a span \[m\].
-fn loaded_length(case: &LoadCase, span: &Span, states: &[Equilibrium; NODES]) -> f64 {
-    if follows_crests(case) {
-        // They are the same all over the span, up to its ends.
-        return (span.end - span.start) * states[1].loaded_pairs() as f64;
-    }
-    // Penetrations as lines between the nodes.
-    let between = |node: usize| {
-        let [from, to] = [node, node + 1].map(|node| span.position(&case.cycle.rows, node));
-        let share = |pair: usize| {
-            let [one, other] = [node, node + 1].map(|node| states[node].balance.penetration[pair]);
-            let loaded = one.max(0.0) + other.max(0.0);
-            if loaded > 0.0 && one.min(other) <= OUT_OF_REACH {
-                // How far apart it is then is not known.
-                return 0.5;
-            }
-            if loaded > 0.0 { loaded / (one.abs() + other.abs()) } else { 0.0 }
-        };
-        (to - from) * (0..case.cycle.springs(span.pairs)).map(share).sum::<f64>()
-    };
-    (0..NODES - 1).map(between).sum()
 }
 
 /// The peak-to-peak transmission error \[m\], infinite beyond the model: the lean path for optimisers.

@@ -12,10 +12,6 @@ use crate::gear::mesh::trace::{NODES, Refining, Span, Trace};
 
 /// Cuts that one span may be given for pairs that take up or lose load.
 const MOST_CUTS: usize = 24;
-/// How many positions there are for each crest at the least, where they follow rough flanks.
-const POSITIONS_PER_CREST: usize = 24;
-/// The fewest that see each of them.
-const POSITIONS_TO_SEE: usize = 2;
 /// Roundings of a path position, from the roll angle where a modification starts and back.
 const ROUNDINGS: f64 = 4.0;
 /// What the last of a span's polynomials may hold of the transmission error: quadrature is then good to about the square
@@ -26,39 +22,22 @@ const TAIL: f64 = 1e-8;
 const ENDS: [usize; 2] = [0, NODES - 1];
 const EACH: [usize; NODES] = [0, 1, 2, 3, 4, 5, 6, 7];
 
-/// Whether positions follow what rough flanks do. Where contact goes over from one crest to another there is a kink, and where pairs take
-/// up load another one among them: between fewer positions neither is looked for, and a curve is seen as fine as they are.
-pub(in crate::gear::mesh) fn follows_crests(case: &LoadCase) -> bool {
-    case.flanks.crests() * POSITIONS_PER_CREST <= case.positions
-}
-
-/// Whether positions see each crest of rough flanks. Among kinks that they do not see another one is none to cut at, nor to look for closely.
-fn sees_crests(case: &LoadCase) -> bool {
-    case.flanks.crests() * POSITIONS_TO_SEE <= case.positions
-}
-
 /// Which extrema of a curve are refined.
 pub(in crate::gear::mesh) fn refining(case: &LoadCase) -> Refining {
-    match (case.flanks.crests(), sees_crests(case)) {
-        (0, _) => Refining::Each,
-        (_, true) => Refining::Few,
-        (_, false) => Refining::Roughly,
-    }
+    if case.flanks.is_sampled() { Refining::Few } else { Refining::Each }
 }
 
 /// Visits the whole cycle in order, in smooth spans no longer than `longest` \[m\].
 pub(in crate::gear::mesh) fn walk(case: &LoadCase, longest: f64, mut visit: impl FnMut(&Span, &[Equilibrium; NODES])) {
     let closest = CLOSEST * case.cycle.period();
     let rounding = ROUNDINGS * f64::EPSILON * case.cycle.pair.tangent_length;
-    let most_cuts = if follows_crests(case) { MOST_CUTS } else { 0 };
-    let breaks = if sees_crests(case) { &case.breaks[..] } else { &[] };
     // Of one span after the other.
     let mut states = [Equilibrium::NONE; NODES];
     for zone in &case.cycle.zones {
         let mut start = zone.start;
         // A steep relief makes much of a rounded position, so that where one starts the limit from inside is taken.
         let mut inwards = [0.0; 2];
-        let inside = breaks.iter().copied().filter(|cut| zone.end - cut > closest).chain([zone.end]);
+        let inside = case.breaks.iter().copied().filter(|cut| zone.end - cut > closest).chain([zone.end]);
         for end in inside {
             if end - start <= closest {
                 continue;
@@ -72,7 +51,7 @@ pub(in crate::gear::mesh) fn walk(case: &LoadCase, longest: f64, mut visit: impl
             while panel <= panels {
                 let to = if panel < panels { start + width * panel } else { end };
                 let span = Span { start: from, end: to, pairs: zone.pairs, touches: [None; 2] };
-                let mut cuts = most_cuts;
+                let mut cuts = MOST_CUTS;
                 let last = case.state(if panel < panels { to } else { end - inwards[1] }, zone.pairs);
                 smooth(case, &span, &[first, last], &mut states, &mut cuts, &mut visit);
                 first = last;

@@ -103,12 +103,6 @@ impl<'a> Flanks<'a> {
         self.sections.iter().chain([&self.middle]).filter_map(|section| section.gaps.as_ref()).any(Gaps::is_sampled)
     }
 
-    /// Between how many crests contact goes over on rough flanks.
-    pub(in crate::gear::mesh) fn crests(&self) -> usize {
-        let sections = self.sections.iter().chain([&self.middle]);
-        sections.filter_map(|section| section.gaps.as_ref()).map(Gaps::crests).fold(0, usize::max)
-    }
-
     /// Whether nothing is taken off along the profiles.
     pub(in crate::gear::mesh) fn is_unmodified(&self) -> bool {
         self.in_the_middle().is_none_or(|gaps| !gaps.is_modified())

@@ -6,11 +6,6 @@ use super::{Outline, share};
 
 /// Number of cells of a piece that is not a cubic.
 const CURVED_CELLS: usize = 8;
-/// Shares of a cell at which a cubic is fitted, and at which it must agree with the profile.
-const FITTED: [f64; 4] = [0.1, 0.35, 0.65, 0.9];
-const CHECKED: [f64; 3] = [0.02, 0.5, 0.98];
-/// Largest error of a fitted cubic, as a share of the largest depth of its cell.
-const CUBIC_TOLERANCE: f64 = 1e-12;
 /// Largest jump of slope that counts as rounding, as a share of the largest slope of the profile.
 const SLOPE_TOLERANCE: f64 = 1e-10;
 /// Number of cells in a block, whose lower bounds are stored together.
@@ -22,8 +17,8 @@ pub(in super::super) struct Cells {
     /// The start of each cell and the end of the last, ascending.
     ends: Vec<f64>,
     curves: Vec<Cell>,
-    /// True where the profile has a kink, or where smoothness is unknown; one entry for each of `ends`.
-    corners: Vec<bool>,
+    /// The cells that begin at a kink, or where smoothness is unknown, and `count()`; ascending.
+    corners: Vec<usize>,
     /// Lower bounds of depth and of second derivative over blocks of cells.
     blocks: Vec<[f64; 2]>,
     /// A lower bound of the depth over each cell and all behind it.
@@ -131,15 +126,9 @@ impl Cells {
         let finite = slopes.iter().flatten().filter(|slope| slope.is_finite());
         let negligible = SLOPE_TOLERANCE * finite.fold(0.0_f64, |most, slope| most.max(slope.abs()));
         let is_cubic = |at: usize| self.curves[at].cubic.is_some();
-        self.corners = (0..=self.count())
-            .map(|at| {
-                let is_inside = at > 0 && at < self.count();
-                !(is_inside
-                    && is_cubic(at - 1)
-                    && is_cubic(at)
-                    && (slopes[at][0] - slopes[at - 1][1]).abs() <= negligible)
-            })
-            .collect();
+        let is_smooth =
+            |at: usize| is_cubic(at - 1) && is_cubic(at) && (slopes[at][0] - slopes[at - 1][1]).abs() <= negligible;
+        self.corners = (1..self.count()).filter(|at| !is_smooth(*at)).chain([self.count()]).collect();
     }
 
     fn find_bounds(&mut self) {
@@ -171,7 +160,7 @@ impl Cells {
 
     /// Index of the first cell after this one that starts at a corner.
     pub(in super::super) fn next_corner(&self, cell: usize) -> usize {
-        (cell + 1..self.count()).find(|at| self.corners[*at]).unwrap_or(self.count())
+        self.corners[self.corners.partition_point(|corner| *corner <= cell)]
     }
 
     /// The cell that contains a position, within this range; at a boundary the cell behind it.
@@ -234,32 +223,4 @@ impl Cells {
         let blocks = self.blocks[begin..end].iter().map(|block| block[which]).fold(f64::INFINITY, f64::min);
         blocks.min(least(from, begin * BLOCK)).min(least(end * BLOCK, to))
     }
-}
-
-/// The cubic through four samples of a profile between two positions, over the distance from the first; `None` if the profile is not a cubic.
-pub(super) fn fitted(outline: &Outline, piece: usize, ends: [f64; 2]) -> Option<[f64; 4]> {
-    let length = ends[1] - ends[0];
-    let depth = |share: f64| outline.depth_on(ends[0] + share * length, piece);
-    // By Newton's divided differences.
-    let mut differences = FITTED.map(depth);
-    let largest = differences.iter().fold(0.0_f64, |most, depth| most.max(depth.abs()));
-    for order in 1..FITTED.len() {
-        for at in (order..FITTED.len()).rev() {
-            differences[at] = (differences[at] - differences[at - 1]) / (FITTED[at] - FITTED[at - order]);
-        }
-    }
-    let mut cubic = [0.0; 4];
-    for at in (0..FITTED.len()).rev() {
-        // Horner: multiply by (share − node), add the next difference.
-        for power in (1..4).rev() {
-            cubic[power] = cubic[power - 1] - FITTED[at] * cubic[power];
-        }
-        cubic[0] = differences[at] - FITTED[at] * cubic[0];
-    }
-    let [c0, c1, c2, c3] = cubic;
-    let is_cubic = CHECKED.iter().all(|share| {
-        let off = c0 + share * (c1 + share * (c2 + share * c3)) - depth(*share);
-        off.abs() <= CUBIC_TOLERANCE * largest
-    });
-    is_cubic.then_some([c0, c1 / length, c2 / (length * length), c3 / (length * length * length)])
 }

@@ -222,7 +222,6 @@ fn the_lowest_place_is_found_wherever_blocks_of_places_begin() {
         }
         let profiles = [&design, &plain].map(|design| design.profiles(0.0));
         let [traced, exact] = [0, 1].map(|at| Gaps::new(&pair, &profiles[at]));
-        assert!(traced.crests() > 0, "the spline rings about the kink");
         for place in 0..=2000 {
             let s = pair.start_of_contact + (pair.end_of_contact - pair.start_of_contact) * f64::from(place) / 2000.0;
             let off = traced.at(s).unwrap() - exact.at(s).unwrap();

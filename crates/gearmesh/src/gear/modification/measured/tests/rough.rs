@@ -1,4 +1,4 @@
-//! Positions too few to follow the crests of rough flanks, against thousands.
+//! Curves of traces at 64 positions against those at thousands.
 
 use super::*;
 use crate::gear::mesh::answers::curve::Summary;
@@ -9,8 +9,8 @@ fn summary(pair: &GearPair, positions: usize, design: &Design) -> Summary {
     cycle.loaded(design, 50.0).curve_and_summary(Wanted::default()).1
 }
 
-/// Tier: second method; places where pairs take up load are not looked for between 64 positions, fewer than 24 to a crest: the mean is that of 8,192
-/// positions to 1e-3 and the loaded contact ratio, of straight penetrations, to 3e-3.
+/// Tier: second method; waves longer and shorter than the distance of positions: the mean of 64 positions is that of 8,192 to 1e-3, the loaded contact
+/// ratio to 3e-3.
 #[test]
 fn few_positions_see_waves_as_many_do() {
     let pair = pair();
@@ -22,8 +22,8 @@ fn few_positions_see_waves_as_many_do() {
     }
 }
 
-/// Tier: second method; of crests on both flanks, which 64 positions do not all see, the largest are found where nodes say so: a peak-to-peak value is never more than
-/// that of 8,192 positions, and less by what none of them is near: without looking at all 3.2 and 2.3 %.
+/// Tier: second method; crests of both flanks between 64 positions: the extrema next to the highest and lowest nodes are refined, so that a peak-to-peak value is never
+/// larger than that of 8,192 positions, and smaller by the crests that no node is near; without refining 3.2 and 2.3 %.
 #[test]
 fn peaks_between_positions_that_do_not_see_each_crest_are_looked_for() {
     let pair = pair();
@@ -39,7 +39,7 @@ fn peaks_between_positions_that_do_not_see_each_crest_are_looked_for() {
     }
 }
 
-/// Tier: second method; a trace that only rings about the kink of a relief has one crest there, and its pairs take up load where those of the relief do.
+/// Tier: second method; a trace that rings about the kink of a relief: its pairs take up load where those of the relief do.
 #[test]
 fn a_trace_that_rings_about_a_kink_keeps_the_places_where_pairs_take_up_load() {
     let pair = pair();
