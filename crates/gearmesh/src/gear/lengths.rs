@@ -21,6 +21,6 @@ mod tests {
     #[test]
     #[allow(clippy::float_cmp)] // the same number is meant
     fn they_are_the_numbers_that_are_written_in_metres() {
-        assert_eq!([mm(3.0), mm(14.079), um(14.0), um(7.81)], [3e-3, 14.079e-3, 14e-6, 7.81e-6]);
+        assert_eq!([mm(3.0), mm(20.0), um(14.0), um(7.0)], [3e-3, 20e-3, 14e-6, 7e-6]);
     }
 }

@@ -62,13 +62,13 @@ impl<'a> Section<'a> {
     /// # Errors
     /// When they are not YAML.
     pub fn merge(self, root: &mut Node) -> Result<(), Diagnostic> {
-        let shift = Shift { from: 0, bytes: self.start, lines: self.lines };
+        let shift = Shift { bytes: self.start, lines: self.lines };
         let mut read = parse(&self.added.text[self.start..]).map_err(|mut wrong| {
             wrong.place = wrong.place.map(|place| shift.moved(place));
             wrong
         })?;
         let Some(Content::Mapping(sections)) = read.as_mut().map(|read| {
-            read.shift(&[shift]);
+            read.shift(shift);
             &mut read.content
         }) else {
             return Ok(());

@@ -321,60 +321,6 @@ impl<'a> LoadCase<'a> {
         Equilibrium { unloaded, balance, peaks: peaks.map(|peaks| spread(&peaks, 0.0)) }
     }
 
-    /// How far the loads of all others would press the flanks of a pair into each other, if it carried nothing: of the sign of
-    /// its penetration, but smooth where it takes up load. None where slices hold each other, friction takes part, or there are no
-    /// others.
-    pub(in crate::gear::mesh) fn pressed_by_others(&self, position: f64, pairs: usize, spring: usize) -> Option<f64> {
-        if matches!(self.regime, Regime::Unloaded | Regime::CoupledSlices(_) | Regime::Resisted(_)) {
-            return None;
-        }
-        let s = self.cycle.path_position(position, spring);
-        let gap = self.gap_of(spring, s)?;
-        if self.cycle.springs(pairs) == 2
-            && let Some(other) = self.of_plain_pair(position, 1 - spring)
-        {
-            return Some(other - gap);
-        }
-        let mut nearest = None;
-        let reach = self.within_reach(position, pairs, Some(spring), &mut nearest);
-        if reach.springs().is_empty() {
-            return None;
-        }
-        let balance = self.balance(&reach, nearest.as_ref()).0;
-        let by_others = if matches!(self.regime, Regime::Pairs) {
-            0.0
-        } else {
-            let others = reach.springs().iter().zip(reach.positions()).zip(&balance.loads);
-            others.map(|((&other, &at), load)| load * self.cycle.coupling(s.min(at), spring.abs_diff(other))).sum()
-        };
-        Some(reach.smallest - gap + balance.approach - by_others)
-    }
-
-    /// Where slices hold each other: the load, over the force, that a slice carries and its recomputed penetration does not
-    /// explain, and its limit in roundings.
-    #[must_use]
-    pub(in crate::gear::mesh) fn unexplained_by_slices(&self, position: f64, pairs: usize) -> Option<[f64; 2]> {
-        let slices = self.slices()?;
-        if let Some((loading, _)) = self.resisted(position, pairs) {
-            return loading.unexplained_by_slices(position, pairs);
-        }
-        let reach = self.within_reach(position, pairs, None, &mut None);
-        Some(slices.unexplained(&|spring| self.flanks_of(spring), &reach, [self.force, self.above(&reach, &mut None)]))
-    }
-
-    /// Where slices hold each other: the load per width \[N/m\] of each slice of the whole face, of each pair within reach by
-    /// its spring.
-    pub(in crate::gear::mesh) fn loads_of_slices(&self, position: f64, pairs: usize) -> Option<Vec<(usize, Vec<f64>)>> {
-        let slices = self.slices()?;
-        if let Some((loading, _)) = self.resisted(position, pairs) {
-            return loading.loads_of_slices(position, pairs);
-        }
-        let reach = self.within_reach(position, pairs, None, &mut None);
-        let loads =
-            slices.line_loads(&|spring| self.flanks_of(spring), &reach, [self.force, self.above(&reach, &mut None)]);
-        Some(reach.springs().iter().copied().zip(loads).collect())
-    }
-
     /// Whether every pair is what the design says of all.
     #[inline]
     pub(in crate::gear::mesh) fn is_evenly_spaced(&self) -> bool {
