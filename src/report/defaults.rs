@@ -5,7 +5,7 @@
 use super::figure::{Figure, figure};
 use super::order::Order;
 use super::plot::Kind;
-use super::spec::Spec;
+use super::spec::{Draw, Spec};
 use super::{ReportError, Tables};
 use declare::number::{significant, with_unit};
 use studygraph::store::bundle::MANY;
@@ -82,8 +82,6 @@ fn specs(stage: &StageRecord, several: bool, tables: Tables<'_>) -> Vec<Spec> {
     found.retain(|spec| fits(spec, tables));
     found
 }
-
-pub type Draw<'a> = dyn Fn(&str, &str, Kind, &str, &str, &str) -> Spec + 'a;
 
 fn of_transmission_error(stage: &str, draw: &Draw<'_>, tables: Tables<'_>) -> Vec<Spec> {
     let Some(summary) = tables(&format!("{stage}.summary")) else { return Vec::new() };

@@ -4,10 +4,9 @@
 //! Must not know: how anything is drawn.
 
 use super::Tables;
-use super::defaults::Draw;
 use super::figure::sentence;
 use super::plot::Kind;
-use super::spec::Spec;
+use super::spec::{Draw, Spec};
 use declare::number::{significant, unit_symbol, with_unit};
 use studygraph::store::manifest::StageRecord;
 use studygraph::table::data::{Data, Table};

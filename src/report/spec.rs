@@ -41,6 +41,9 @@ pub struct Spec {
     pub note: String,
 }
 
+/// Makes a figure of a stage, from its name, its title, its kind, its table and the columns of both axes.
+pub type Draw<'a> = dyn Fn(&str, &str, Kind, &str, &str, &str) -> Spec + 'a;
+
 impl Spec {
     /// With nothing but what every figure has.
     #[must_use]
