@@ -90,7 +90,7 @@ fn positions(cycle: &Mesh, design: &Design) {
 
 /// Peak-to-peak and variance from positions in equal steps.
 fn equal_steps(loading: &Loaded, positions: usize) -> (f64, f64) {
-    let cycle = loading.cycle;
+    let cycle = loading.mesh();
     let (mut largest, mut smallest) = (f64::NEG_INFINITY, f64::INFINITY);
     let (mut sum, mut squares) = (0.0, 0.0);
     for index in 0..positions {

@@ -17,7 +17,7 @@ use gearmesh::gear::contact::CornerContact;
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::geometry::root::RootShape;
 use gearmesh::gear::mesh::answers::curve::Wanted;
-use gearmesh::gear::mesh::{Loaded, Mesh, Settings};
+use gearmesh::gear::mesh::{Mesh, Settings};
 use gearmesh::gear::modification::arc::ArcRelief;
 use gearmesh::gear::modification::curve::Curve;
 use gearmesh::gear::modification::relief::{Amount, FromTip, Start};

@@ -10,7 +10,7 @@ use gearmesh::gear::compliance::ContactLaw::{Linear, LoadDependent};
 use gearmesh::gear::contact::SliceCoupling;
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::mesh::answers::curve::Wanted;
-use gearmesh::gear::mesh::{Loaded, Mesh, Settings};
+use gearmesh::gear::mesh::{Mesh, Settings};
 
 criterion_group!(name = benches; config = brief(); targets = tables, curves, slices, stages);
 

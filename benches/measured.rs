@@ -10,7 +10,7 @@ use gearmesh::gear::compliance::ContactLaw::Linear;
 use gearmesh::gear::contact::CornerContact;
 use gearmesh::gear::geometry::{GearPair, Side};
 use gearmesh::gear::mesh::answers::curve::Wanted;
-use gearmesh::gear::mesh::{Loaded, Settings};
+use gearmesh::gear::mesh::{Settings};
 use gearmesh::gear::modification::curve::Curve;
 use gearmesh::gear::modification::flank::Flank;
 use gearmesh::gear::modification::measured::Measured;
