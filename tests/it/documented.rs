@@ -1,8 +1,10 @@
 //! Numbers in the documentation that come from studies are those of the committed results, to their printed digits.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
+use crate::layering::rust_files;
 use studygraph::store::manifest::Manifest;
 use studygraph::store::results::Folder;
 use studygraph::table::data::Table;
@@ -218,6 +220,29 @@ fn printouts_are_as_short_as_said() {
     assert_said("docs/guide.md", &format!("{words} {} in {}.", sun_planet.0, sun_planet.1));
     let words = format!("`undercut.yaml` ({} numbers in {} lines) and", undercut.0, undercut.1);
     assert_said("docs/guide.md", &format!("{words} `fzg_c.yaml` ({} in {}) have", fzg_c.0, fzg_c.1));
+}
+
+/// The words of code that stand in backquotes.
+fn code_words(text: &str) -> impl Iterator<Item = &str> {
+    let is_name = |word: &&str| word.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    text.split('`').skip(1).step_by(2).filter(is_name)
+}
+
+/// Names of the glossary that no source has.
+fn missing_names(glossary: &str) -> Vec<&str> {
+    let top = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let files = ["crates", "src"].into_iter().flat_map(|folder| rust_files(&top.join(folder)));
+    let sources: String = files.map(|file| fs::read_to_string(file).unwrap()).collect();
+    let words: BTreeSet<&str> = sources.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').collect();
+    code_words(glossary).filter(|name| !words.contains(name)).collect()
+}
+
+#[test]
+fn names_of_the_glossary_are_in_the_source() {
+    let glossary = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/glossary.md")).unwrap();
+    assert!(code_words(&glossary).count() > 60);
+    assert_eq!(missing_names(&glossary), Vec::<&str>::new());
+    assert_eq!(missing_names("| span | `span`, `neither_type_nor_column` |"), ["neither_type_nor_column"]);
 }
 
 /// A document with another number, or none, is found.
