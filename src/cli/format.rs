@@ -4,11 +4,13 @@
 
 use std::borrow::Cow;
 
+use declare::text::visible;
+
 /// A text that no terminal takes for more than text: what would move the cursor, colour, hide or turn round is written as
 /// JSON writes it. Titles, labels and cells come from files that anybody may have made.
 #[must_use]
 pub fn plain(text: &str) -> Cow<'_, str> {
-    if !text.contains(is_hidden) {
+    if is_printable_ascii(text) || !text.contains(is_hidden) {
         return Cow::Borrowed(text);
     }
     let shown = |mut all: String, c: char| {
@@ -20,6 +22,16 @@ pub fn plain(text: &str) -> Cow<'_, str> {
         all
     };
     Cow::Owned(text.chars().fold(String::with_capacity(text.len()), shown))
+}
+
+/// A text in which everything can be seen, as [`visible`] has it.
+pub(super) fn shown(text: &str) -> Cow<'_, str> {
+    if is_printable_ascii(text) { Cow::Borrowed(text) } else { visible(text) }
+}
+
+/// True if a text is printable ASCII with line ends and tabs: most texts are, and this is known ten times as fast.
+fn is_printable_ascii(text: &str) -> bool {
+    text.bytes().all(|byte| matches!(byte, b' '..=b'~' | b'\n' | b'\t'))
 }
 
 /// Control characters but line ends and tabs, and those that turn the direction of writing round.

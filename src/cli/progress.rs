@@ -13,8 +13,7 @@ use std::time::{Duration, Instant};
 use console::Term;
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
-use super::format::{duration, plain, rough};
-use declare::text::visible;
+use super::format::{duration, plain, rough, shown};
 use studygraph::runner::events::{Event, Observer};
 use studygraph::study::Study;
 
@@ -176,8 +175,8 @@ impl Watcher {
         }
         match &self.bars {
             // Above the bars; when the terminal is gone there is nobody to tell.
-            Some(bars) => drop(bars.println(between_words(&visible(text), Term::stderr().size().1.into()))),
-            None => tell(&format!("{}\n", visible(text))),
+            Some(bars) => drop(bars.println(between_words(&shown(text), Term::stderr().size().1.into()))),
+            None => tell(&format!("{}\n", shown(text))),
         }
     }
 
@@ -288,7 +287,7 @@ pub fn aside(bars: Option<&MultiProgress>, text: &str) {
 
 /// A line on standard error; when it cannot be written (a full disk, a reader that is gone) there is nobody left to tell.
 pub fn complain(text: &str) {
-    let _ = writeln!(std::io::stderr(), "{}", visible(text));
+    let _ = writeln!(std::io::stderr(), "{}", shown(text));
 }
 
 /// What a lock says, which may be waited for.
