@@ -134,8 +134,9 @@ impl Observer for Lines<'_> {
             }
             Event::Progressed { stage, share } => self.progressed(stage, *share),
             Event::Warned { stage, message } => self.warned(Some(stage), message),
-            Event::Recalled { stage, warnings } => {
-                warnings.iter().for_each(|message| self.warned(Some(stage), message));
+            Event::Recalled { warnings } => {
+                let each = warnings.iter().flat_map(|(stage, warnings)| warnings.iter().map(move |one| (stage, one)));
+                each.for_each(|(stage, message)| self.warned(Some(stage), message));
             }
             Event::Publishing { file } => {
                 (self.say)(&json!({ "event": "writing", "study": self.study, "file": file }));

@@ -99,10 +99,12 @@ const WIDE: u16 = 100;
 impl Watcher {
     /// How many of so many warnings were not told one by one.
     fn more_warnings(&self, stage: &str, count: usize) {
-        if count > MOST_WARNINGS {
-            let more = count - MOST_WARNINGS;
-            self.stage(stage, "warning", &format!("and {more} more; the report and `manifest.json` have all"));
-        }
+        self.of_more_warnings(stage, count).iter().for_each(|line| self.line(line));
+    }
+
+    fn of_more_warnings(&self, stage: &str, count: usize) -> Option<String> {
+        let more = count.checked_sub(MOST_WARNINGS).filter(|more| *more > 0)?;
+        Some(self.of_stage(stage, "warning", &format!("and {more} more; the report and `manifest.json` have all")))
     }
 
     #[must_use]
@@ -181,8 +183,12 @@ impl Watcher {
     }
 
     fn stage(&self, stage: &str, word: &str, rest: &str) {
+        self.line(&self.of_stage(stage, word, rest));
+    }
+
+    fn of_stage(&self, stage: &str, word: &str, rest: &str) -> String {
         let width = self.width;
-        self.line(format!("  {stage:width$}  {word:7}  {rest}").trim_end());
+        format!("  {stage:width$}  {word:7}  {rest}").trim_end().to_owned()
     }
 
     fn bar(&self, stage: &str) -> Option<ProgressBar> {
@@ -236,9 +242,20 @@ impl Observer for Watcher {
                     self.stage(stage, "warning", message);
                 }
             }
-            Event::Recalled { stage, warnings } => {
-                warnings.iter().take(MOST_WARNINGS).for_each(|message| self.stage(stage, "warning", message));
-                self.more_warnings(stage, warnings.len());
+            Event::Recalled { warnings } => {
+                let mut lines = Vec::new();
+                for (stage, warnings) in *warnings {
+                    let some = warnings.iter().take(MOST_WARNINGS);
+                    lines.extend(some.map(|message| self.of_stage(stage, "warning", message)));
+                    lines.extend(self.of_more_warnings(stage, warnings.len()));
+                }
+                // A run with nothing to do takes as long as its writes.
+                if self.bars.is_none() && !lines.is_empty() {
+                    lines = vec![lines.join("\n")];
+                }
+                for line in lines {
+                    self.line(&line);
+                }
             }
             Event::Finished { stage, seconds } => {
                 let running = self.end(stage);

@@ -27,10 +27,9 @@ pub enum Event<'a> {
         stage: &'a str,
         message: &'a str,
     },
-    /// The warnings of the run that computed a stage, whose tables are up to date.
+    /// The warnings of the runs that computed stages whose tables are up to date, by stage.
     Recalled {
-        stage: &'a str,
-        warnings: &'a [String],
+        warnings: &'a [(&'a str, &'a [String])],
     },
     /// A file of the results is about to be made and written.
     Publishing {

@@ -75,9 +75,9 @@ pub fn run(
         published = publish(&mut outcome);
     }
     // A run of the same study says the same, whatever was computed.
-    for stage in outcome.stages.iter().filter(|stage| stage.ran == 0 && !stage.warnings.is_empty()) {
-        observer.event(&Event::Recalled { stage: &stage.name, warnings: &stage.warnings });
-    }
+    let recalled = outcome.stages.iter().filter(|stage| stage.ran == 0 && !stage.warnings.is_empty());
+    let recalled: Vec<_> = recalled.map(|stage| (stage.name.as_str(), stage.warnings.as_slice())).collect();
+    observer.event(&Event::Recalled { warnings: &recalled });
     for message in &warnings(cache, &outcome) {
         observer.event(&Event::Warning { message });
     }

@@ -101,9 +101,9 @@ impl Note {
         for message in &self.notes {
             observer.event(&Event::Warning { message });
         }
-        for (stage, warnings) in &self.warnings {
-            observer.event(&Event::Recalled { stage, warnings });
-        }
+        let warnings: Vec<_> =
+            self.warnings.iter().map(|(stage, warnings)| (stage.as_str(), warnings.as_slice())).collect();
+        observer.event(&Event::Recalled { warnings: &warnings });
     }
 }
 
