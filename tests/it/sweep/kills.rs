@@ -141,8 +141,14 @@ fn a_disk_that_fails_under_a_sweep_costs_time_alone() {
             let at = 1 + (operations * (2 * step + 1) + turn * operations / 3) / 7;
             let home = disk::folder();
             let place = Place::new(home.path());
-            let orders = [("SHIM_AT", at.to_string()), ("SHIM_ERROR", error.to_string())];
+            let lasting = usize::from(step == 1).to_string();
+            let orders = [("SHIM_AT", at.to_string()), ("SHIM_ERROR", error.to_string()), ("SHIM_LASTING", lasting)];
             let ended = place.run(&text, &orders);
+            let is_reported = !ended.status.success() || !ended.error.is_empty();
+            assert!(
+                step != 1 || error == disk::SHORT || is_reported,
+                "an error that lasts is reported: {error} at {at}"
+            );
             let there = if place.disk.join("cache").exists() {
                 sound(&place.disk.join("cache"), &keys)
             } else {
